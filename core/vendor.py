@@ -58,6 +58,8 @@ class Vendor:
         speaks: what the language can say, for programs that are translated into it; None if it
             says everything that a `Program` holds.
         machine_data: a robot as a file of its own controller describes it; None if none is read.
+        stated: figures of the motion model that such a file states, see `with_stated`; None if none
+            are read.
         described: a robot as a file of its own controller alone describes it; None if no such file
             is read.
         listed: what is said of each arm that the vendor lists, drivable or not, by its name
@@ -84,6 +86,7 @@ class Vendor:
     emulation_only: Mapping[str, str] = field(default_factory=dict)
     speaks: Dialect | None = None
     machine_data: Callable[[Robot, Path], Robot] | None = None
+    stated: Callable[[Path], Mapping[str, tuple[Any, str]]] | None = None
     described: Callable[[Path], Robot] | None = None
     listed: Callable[[], Mapping[str, Listed]] = dict
     backups: Callable[[], BackupOpener] | None = None
@@ -163,6 +166,14 @@ class Vendor:
         if self.machine_data is None:
             raise InputError(f"{file}: no machine data are read of robots of {self.name}")
         return self.machine_data(robot, file)
+
+    def as_stated(self, robot: Robot, file: Path) -> Vendor:
+        """The same vendor, driving a robot as a file of its own controller says.
+
+        Raises:
+            InputError: the file cannot be read.
+        """
+        return self if self.stated is None else self.with_stated(robot, self.stated(file))
 
     def read(
         self,
@@ -329,7 +340,8 @@ def vendor_of(
             files of its controllers; ``OPENER`` of ``backup.opener`` opens their backups.
         folder: where it is; robots, motion files and the list of arms stand in ``data``.
         language: reader, writer, patcher and recorder.
-        describes_robots: ``robot_of`` of ``machine_data`` makes a robot of such a file alone.
+        describes_robots: ``robot_of`` of ``machine_data`` makes a robot of such a file alone, and
+            ``stated_in`` says how its controller drives.
         others: see `Vendor`.
     """
     data = folder / "data"
@@ -346,6 +358,10 @@ def vendor_of(
     def described(file: Path) -> Robot:
         reading = import_module(".machine_data", package)  # seldom needed
         return cast("Robot", reading.robot_of(file))
+
+    def stated(file: Path) -> Mapping[str, tuple[Any, str]]:
+        reading = import_module(".machine_data", package)  # seldom needed
+        return cast("Mapping[str, tuple[Any, str]]", reading.stated_in(file))
 
     def opener() -> BackupOpener:
         opening = import_module(".backup.opener", package)  # seldom needed
@@ -364,6 +380,7 @@ def vendor_of(
         recorder=language,
         machine_data=laid_on if find_spec(f"{package}.machine_data") else None,
         described=described if describes_robots else None,
+        stated=stated if describes_robots else None,
         backups=opener if (folder / "backup" / "opener.py").is_file() else None,
         **others,
     )

@@ -144,7 +144,8 @@ def laid_on(made: Setup, options: RobotOptions) -> Setup:
     if options.machine_data is not None:
         robot = made.vendor.as_described(made.robot, Path(options.machine_data))
         cell = None if made.cell is None else replace(made.cell, robot=robot)
-        made = replace(made, robot=robot, cell=cell)
+        vendor = made.vendor.as_stated(robot, Path(options.machine_data))
+        made = replace(made, vendor=vendor, robot=robot, cell=cell)
     if options.motion is not None:
         made = replace(made, vendor=made.vendor.driven_by(Path(options.motion), made.robot))
     if options.configuration is not None:

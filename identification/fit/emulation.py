@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
-from ...core.motion.command.elasticity import leads
+from ...core.motion.command.elasticity import leads_at
 from ...core.motion.command.servo import friction_at, transient_at
 from ...core.motion.command.smoothing import JointMotion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
@@ -291,7 +291,8 @@ def led(
     q += transient_at(servo, smoothing, stamped, t, states)[0]
     if controller.model.elasticity == RIGID:
         return q
-    return q + leads(controller.model.elasticity, controller.robot, *states)
+    elasticity, robot = controller.model.elasticity, controller.robot
+    return q + leads_at(elasticity, robot, smoothing, stamped, t, states)
 
 
 def _begins(changed: Stage | None, stage: Stage) -> bool:

@@ -160,7 +160,10 @@ def usual_parameters(model: MotionModel, robot: Robot) -> list[str]:
     if before:
         return before
     scales = [f"limit.joint_acceleration_scale[{k}] = 1" for k in range(robot.arm_size)]
-    return ["blend.tcp.beta[0] = 0", "time.smoothing_s[0] = 0.02", *scales]
+    averages = ["time.smoothing_s[*]" if model.smoothing else "time.smoothing_s[0] = 0.02"]
+    if model.joint_smoothing:
+        averages.append("time.joint_smoothing_s[*]")
+    return ["blend.tcp.beta[0] = 0", *averages, *scales]
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ...robot.model import Robot
 from ..model.elasticity import RIGID
 from ..model.motion_model import MotionModel
 from ..timing.timing import Timing
-from .elasticity import derivatives_of, lead_states, lead_step, links_of
+from .elasticity import derivatives_of, lead_states_at, lead_step, links_of
 from .ramp import ramped
 from .servo import FrictionMemory, transient_at
 from .smoothing import STEP, JointMotion, Smoothing, States, even_times, knot_step
@@ -75,7 +75,8 @@ def commanded_motion(
         first = min(begin, t[part][0] - back)
         if friction is not None:
             first = min(first, friction.known_to)
-        stamped = stamped_motion(timing, first - smoothing.window, end)
+        # What `lead_states_at` averages may begin two steps before.
+        stamped = stamped_motion(timing, first - smoothing.window - 2 * step, end)
         smooth = smoothing.command(stamped, t[part])
         q[part], dq[part], ddq[part] = smooth
         offs = [] if friction is None else [friction.over(stamped, t[part], smooth)]
@@ -88,9 +89,8 @@ def commanded_motion(
             if servo.gives:
                 offs.append(transient_at(servo, smoothing, stamped, t[part], smooth, jerk))
         if lead is not None:
-            for made, own in zip(
-                lead, lead_states(elasticity, robot, even, known, t[part]), strict=True
-            ):
+            led = lead_states_at(elasticity, robot, smoothing, stamped, even, known, t[part])
+            for made, own in zip(lead, led, strict=True):
                 made[part] = own
         for off in offs:
             for links, own in zip((q, dq, ddq), off, strict=True):

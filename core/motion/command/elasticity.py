@@ -14,7 +14,8 @@ Gears are softer where little torque passes them (lost motion, as in gear makers
 curves). A joint with slack s leads by l + s tanh(l / s), l being what its stiffness alone gives. A
 gear that holds a weight, or part of it where a spring balances the arm, has used up some of its
 slack at rest, at h: it leads by l + s (tanh((l + h) / s) − tanh(h / s)), as what it gives way by at
-rest is in the joints that a log starts from.
+rest is in the joints that a log starts from. A controller may work that out before the last of its
+averages over time (`slack_averaged`).
 
 What torque bends beside the gear that it passes, bearings and links, moves other joints' axes too:
 the compliance K⁻¹ is then no diagonal matrix. A joint leads by a share of what the torque on
@@ -28,6 +29,7 @@ that they drive.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -37,7 +39,7 @@ from ...robot.kinematics.lean import lean
 from ...robot.model import Robot
 from ..model.elasticity import Elasticity
 from ..model.point_masses import filled, mass_loads
-from .smoothing import JointMotion, States
+from .smoothing import JointMotion, Smoothing, States, even_times
 
 _FINEST, _COARSEST = 1e-3, 4e-3
 """s between the times at which leads are worked out, between which they are cubic: a 16th of what
@@ -64,6 +66,80 @@ def leads(
     used, taken = used[:, loose] / slack, given[:, loose] / slack
     lead[:, loose] += slack * (np.tanh(taken + used) - np.tanh(used))
     return np.asarray(lead + filled(elasticity.lag, size) * dq)
+
+
+def leads_at(
+    elasticity: Elasticity,
+    robot: Robot,
+    smoothing: Smoothing,
+    stamped: JointMotion,
+    t: FloatArray,
+    states: States,
+) -> FloatArray:
+    """`leads` of a stamped motion at times t (T,) that do not decrease, smoothed to states (T, N)
+    there."""
+    if not _averages_slack(elasticity, smoothing):
+        return leads(elasticity, robot, *states)
+    step = lead_step(smoothing.window)
+    end = min(t[-1], stamped.t[-1] + smoothing.window)
+    even = even_times(max(t[0], stamped.t[0]) - step, end + step, step)
+    found = averaged_slack(elasticity, robot, smoothing, stamped, even, t)
+    return leads(replace(elasticity, slack=()), robot, *states) + found[0]
+
+
+def averaged_slack(
+    elasticity: Elasticity,
+    robot: Robot,
+    smoothing: Smoothing,
+    stamped: JointMotion,
+    even: FloatArray,
+    at: FloatArray,
+) -> States:
+    """What slack adds, (T, N), with two derivatives, where the longest average comes behind it.
+
+    Args:
+        elasticity: of the gears.
+        robot: the robot.
+        smoothing: of the joints.
+        stamped: the stamped motion; it may begin the whole window before ``at`` does.
+        even: (S,) s, even, about ``at``.
+        at: (T,) s, not decreasing.
+    """
+    before, longest = smoothing.but_the_longest, max(smoothing.widths)
+    step = float(even[1] - even[0])
+    t = even_times(even[0] - longest, even[-1], step)
+    states = before.command(stamped, t)
+    added = leads(elasticity, robot, *states)
+    added -= leads(replace(elasticity, slack=()), robot, *states)
+    return _spline(t, added).averaged(longest, at)
+
+
+def _averages_slack(elasticity: Elasticity, smoothing: Smoothing) -> bool:
+    return elasticity.slack_averaged and any(elasticity.slack) and bool(smoothing.widths)
+
+
+def lead_states_at(
+    elasticity: Elasticity,
+    robot: Robot,
+    smoothing: Smoothing,
+    stamped: JointMotion,
+    t: FloatArray,
+    states: States,
+    at: FloatArray,
+) -> States:
+    """`lead_states` of a stamped motion.
+
+    Args:
+        elasticity, robot, t, states, at: see there.
+        smoothing: of the joints.
+        stamped: the stamped motion, from the whole window before t on.
+    """
+    if not _averages_slack(elasticity, smoothing):
+        return lead_states(elasticity, robot, t, states, at)
+    stiff = lead_states(replace(elasticity, slack=()), robot, t, states, at)
+    added = averaged_slack(elasticity, robot, smoothing, stamped, t, at)
+    lead, change, bend = (one + more for one, more in zip(stiff, added, strict=True))
+    return lead, change, bend
 
 
 def lead_states(
@@ -156,11 +232,16 @@ def derivatives_of(
         values: (S, N).
         at: (T,) s, not decreasing.
     """
+    return _spline(t, values).at(at)
+
+
+def _spline(t: FloatArray, values: FloatArray) -> JointMotion:
+    """The cubic spline through values (S, N) at even times (S,), at rest outside."""
     values = np.ascontiguousarray(values)
     slopes = np.zeros_like(values)
     if len(t) > 2:
         _fill_slopes(values, float(t[1] - t[0]), slopes, np.zeros(len(values)))
-    return JointMotion(t, values, slopes).at(at)
+    return JointMotion(t, values, slopes)
 
 
 @lean

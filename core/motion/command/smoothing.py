@@ -32,9 +32,16 @@ _SLACK = 1e-6
 """Share of a step by which times may be off through rounding."""
 
 
-def smoothing_at(model: MotionModel, jerk_fraction: float) -> Smoothing:
-    """What a model does to the commanded joints where a share of the jerk limit is programmed."""
-    made = Smoothing(tuple(width for width in model.smoothing if width > 0))
+def smoothing_at(model: MotionModel, jerk_fraction: float, joint_moves: bool = False) -> Smoothing:
+    """What a model does to the commanded joints where a share of the jerk limit is programmed.
+
+    Args:
+        model: of the controller.
+        jerk_fraction: that share.
+        joint_moves: whether all moves are joint moves.
+    """
+    widths = model.joint_smoothing if joint_moves and model.joint_smoothing else model.smoothing
+    made = Smoothing(tuple(width for width in widths if width > 0))
     if model.jerk is None:
         return made
     return made.lengthened_to(window_for_jerk(model.jerk * jerk_fraction))
@@ -112,6 +119,11 @@ class Smoothing:
     def deviation(self) -> float:
         """s²; times a bound of a joint's acceleration, how far it deviates from the stamp."""
         return sum(width**2 for width in self.widths) / 24.0
+
+    @property
+    def but_the_longest(self) -> Smoothing:
+        """What comes before the last of the averages, which is the longest."""
+        return Smoothing(tuple(sorted(self.widths)[:-1]))
 
     def lengthened_to(self, width: float) -> Smoothing:
         """The same with its longest moving average at least this long."""

@@ -21,6 +21,7 @@ from ..command.commanded_motion import commanded_motion, stretches
 from ..command.smoothing import Smoothing, smoothing_at
 from ..command.trajectory import Trajectory, sample_times
 from ..geometry.pieces import Sampling
+from ..geometry.segments import JOINT_SEGMENT
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..model.motion_model import MotionModel
 from ..model.torque import WITHOUT_LIMIT
@@ -300,7 +301,8 @@ class Controller:
     def smoothing(self, program: Program, path: Path) -> Smoothing:
         """What is done to the commanded joints in time: as the gentlest move's jerk needs it."""
         gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
-        return smoothing_at(self.model, gentlest)
+        joint_moves = bool((path.segments.ends.kind == JOINT_SEGMENT).all())
+        return smoothing_at(self.model, gentlest, joint_moves)
 
     def smoothing_window(self, program: Program, path: Path) -> float:
         """Length in s of what one smoothed sample depends on."""

@@ -180,9 +180,7 @@ class ZonePlanner:
         if isinstance(zone, SpeedFraction):
             return (self._within(i, self._braking(i, zone.fraction), 0.0),) * 3
         if isinstance(zone, ContourFraction):
-            half = self._model.neighbour_fraction
-            share = Reach(zone.fraction * half, (("tcp", i, half),))
-            return ((share, share),) * 3
+            return (self._by_contour(i, zone.fraction),) * 3
         if isinstance(zone, Angle):
             pair = (self._by_angle(i, zone.angle, i), self._by_angle(i + 1, zone.angle, i))
             return (pair,) * 3
@@ -209,6 +207,26 @@ class ZonePlanner:
 
     def _note(self, i: int, message: str) -> None:
         self._notes.append(Note(message, self._moves[i]))
+
+    def _by_contour(self, i: int, fraction: float) -> tuple[Reach, Reach]:
+        """Reaches of a share of half the line; between two joint moves as far on both sides as on
+        the shorter line."""
+        half = self._model.neighbour_fraction
+        share = Reach(fraction * half, (("tcp", i, half),))
+        lines = [self._joint_distance(segment) for segment in (i, i + 1)]
+        if any(line.value < STILL for line in lines):
+            return share, share
+        size = share * least(*lines)
+        return size * lines[0].inverse(), size * lines[1].inverse()
+
+    def _joint_distance(self, segment: int) -> Reach:
+        """|Δq| of a joint move; 0 of others."""
+        if self._segments.ends.kind[segment] != JOINT_SEGMENT:
+            return Reach(0.0)
+        way = self._segments.ends.q[segment, 1] - self._segments.ends.q[segment, 0]
+        size = float(np.linalg.norm(way))
+        along = way / max(size, STILL)
+        return Reach(size, (("q1", segment, along), ("q0", segment, -along)))
 
     def _by_angle(self, segment: int, angle: float, corner: int) -> Reach:
         """Reach of a zone given as an angle (rad) of the tool's turn."""

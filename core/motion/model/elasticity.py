@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ...errors import InputError
 from .figures import FitRange, Stage, Tables, check_figures, figure, member
-from .kinds import FINITE, NOT_NEGATIVE, RealNumber, Row, Whole
+from .kinds import FINITE, NOT_NEGATIVE, RealNumber, Row, TruthValue, Whole
 
 _LEAD = FitRange(-5e-3, 5e-3, 1e-4)
 
@@ -71,6 +71,13 @@ class Elasticity:
         unit="rad",
         default=(),
         fit=FitRange(0.0, 5e-3, 1e-4),
+    )
+    slack_averaged: bool = figure(
+        "slack_averaged",
+        TruthValue(),
+        Stage.LEAD,
+        "whether the longest of the averages over time comes behind what slack adds",
+        default=False,
     )
     lag: tuple[float, ...] = figure(
         "lag_s",

@@ -154,6 +154,15 @@ class MotionModel:
         always=True,
         fit=FitRange(0.0, 0.5, 0.01),
     )
+    joint_smoothing: tuple[float, ...] = figure(
+        "time.joint_smoothing_s",
+        Row(_WAIT, per="average", single=True),
+        Stage.TIMING,
+        "the same where all moves of a program are joint moves; without, as in other programs",
+        unit="s",
+        default=(),
+        fit=FitRange(0.0, 0.5, 0.01),
+    )
     settling: float | None = figure(
         "time.settling_s",
         RealNumber(_WAIT, optional=True),

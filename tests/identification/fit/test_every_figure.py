@@ -90,6 +90,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "time.start_ramp_s": (0.15, {}),
     "time.ramp_s": (0.03, {}),
     "time.smoothing_s": ((0.04, 0.02), {}),
+    "time.joint_smoothing_s": ((0.04, 0.02), {"time.joint_smoothing_s": (0.03, 0.02)}),
     "time.settling_s": (0.03, {"time.in_position_rad": 0.0}),
     "time.in_position_rad": (3e-3, SWIFT),
     "time.in_position_time_s": (0.06, SWIFT),
@@ -107,6 +108,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "elasticity.carried": ((Carried(5, (3e-5, 2e-5)),), {}),
     "elasticity.coupled": ((Coupled(3, 2, 0.2),), {}),
     "elasticity.slack_rad": ((2e-3, 1e-3), {}),
+    "elasticity.slack_averaged": (True, {}),
     "elasticity.lag_s": ((0.0, 1e-3), {}),
     "elasticity.weight": ((0.0, 2.0), {}),
     "elasticity.spring_rad": ((2e-4,), {}),
@@ -174,7 +176,15 @@ def everything() -> Program:
 
 
 PROGRAM = everything()
+JOINT_MOVES = Program(
+    tuple(one for one in PROGRAM.moves if isinstance(one, MoveJ)), start=PROGRAM.start
+)
 Result = list[np.ndarray] | str
+
+
+def program(key: str) -> Program:
+    """One in which a figure counts."""
+    return JOINT_MOVES if key == "time.joint_smoothing_s" else PROGRAM
 
 
 @cache
@@ -182,18 +192,19 @@ def stages(key: str, changed: bool) -> tuple[Result, ...]:
     """What each stage of an emulation gives; what it says where it gives none."""
     one = pair(key)[changed]
     controller = Controller(VENDOR, ROBOT, one, COARSE)
+    driven = program(key)
     try:
-        path = controller.plan(PROGRAM)
+        path = controller.plan(driven)
     except MotionError as error:
         return (str(error),)
-    timing, smoothing = controller.stamp(PROGRAM, path), controller.smoothing(PROGRAM, path)
+    timing, smoothing = controller.stamp(driven, path), controller.smoothing(driven, path)
     t = np.arange(0.0, timing.duration, 0.02)
     states = smoothing.command(stamped_motion(timing), t)
     return (
         [path.q, path.sigma],
         [timing.begin, timing.end, np.array([timing.duration, *smoothing.widths]), states[0]],
         [commanded(controller, smoothing, stamped_motion(timing), t)],
-        [controller.sample(PROGRAM, timing).t],
+        [controller.sample(driven, timing).t],
     )
 
 
@@ -297,10 +308,11 @@ def test_what_does_not_say_so_is_not_fitted(key: str) -> None:
 
 
 @cache
-def prepared(corners: bool, jerk: bool) -> PreparedRun:
-    """A log of the whole program."""
+def prepared(corners: bool, jerk: bool, joints: bool) -> PreparedRun:
+    """A log of the whole program, or of its joint moves."""
     one = model(RICH | (CORNERS if corners else {}) | (JERK if jerk else {}))
-    run = synthetic_run(Controller(VENDOR, ROBOT, one), PROGRAM, "everything", SOUND, 0)
+    driven = JOINT_MOVES if joints else PROGRAM
+    run = synthetic_run(Controller(VENDOR, ROBOT, one), driven, "everything", SOUND, 0)
     return prepare(run, VENDOR, ROBOT, one)
 
 
@@ -310,7 +322,7 @@ def test_it_is_fitted_with_what_is_kept_of_other_emulations(number: str) -> None
     key = FITTED[number]
     beside = EXAMPLES[key][1]
     base = pair(key)[1]
-    run = prepared(beside is CORNERS, beside is JERK)
+    run = prepared(beside is CORNERS, beside is JERK, program(key) is JOINT_MOVES)
     named = ParameterSet.named(base, [number])
     (one,) = named.parameters
     usual = fit_of(number)

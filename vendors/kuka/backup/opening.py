@@ -60,7 +60,7 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
         homes=declared.homes,
         comments=declared.comments,
         signals=signals_in(data),
-        motion=motion_figures(config, lists.machine, notes),
+        motion=motion_figures(config, lists.machine),
         notes=notes.all(),
     )
 

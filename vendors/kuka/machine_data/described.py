@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ....core.errors import FlybyError, InputError
 from ....core.robot.hulls import ORIGIN, hulls, reach_of
@@ -17,6 +18,7 @@ from ..data_list import DataList
 from .assumed import starting_times
 from .axis_limits import AxisLimits, acceleration_rule, axis_limits, axis_name
 from .external_axes import external_axes
+from .filters import filters
 from .geometry import AXES, ArmGeometry, frame, geometry
 from .named_arms import APART, FindRobot, apart, called, listed_arm, payload_of_name
 
@@ -55,6 +57,15 @@ def with_machine_data(robot: Robot, file: Path) -> Robot:
         for joint, limit in zip(robot.joints, limits, strict=True)
     )
     return _said(replace(robot, joints=joints), data, limits)
+
+
+def stated_in(file: Path) -> dict[str, tuple[Any, str]]:
+    """What a ``$machine.dat`` says of how its controller drives; see `filters`.
+
+    Raises:
+        InputError: the file cannot be read.
+    """
+    return filters(_read(file))
 
 
 def robot_of(file: Path) -> Robot:

@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.motion.command.elasticity import _gears, lead_states, leads
+from flyby.core.motion.command.commanded_motion import commanded_motion, stamped_motion
+from flyby.core.motion.command.elasticity import _gears, lead_states, leads, leads_at
+from flyby.core.motion.command.smoothing import Smoothing
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.elasticity import RIGID, Carried, Coupled, Elasticity
 from flyby.core.motion.model.motion_file import load_motion_model
@@ -291,6 +293,42 @@ def test_what_gears_hold_is_read_with_its_keys(tmp_path) -> None:
     file.write_text("[elasticity]\nweight = [inf]\n")
     with pytest.raises(InputError, match=r"elasticity\.weight"):
         load_motion_model(file)
+
+
+def test_slack_may_be_averaged_with_what_it_adds_to(abb) -> None:
+    """The mean, over the longest average, of what it adds to the motion before that."""
+    gears = replace(GEARS, slack=(2e-3, 1e-3), weight=(0.0, 2.0), slack_averaged=True)
+    controller = abb.controller(MotionModel(smoothing=(0.03, 0.05), elasticity=gears))
+    driven = program(abb)
+    timing = controller.stamp(driven, controller.plan(driven))
+    stamped, smoothing = stamped_motion(timing), controller.smoothing(driven, timing.path)
+    t = np.linspace(0.1, timing.duration - 0.1, 200)
+    back = np.linspace(0.0, 0.05, 201)
+    at = (t[:, None] - back[::-1]).ravel()
+    order = np.argsort(at, kind="stable")
+    before = [np.empty((len(at), abb.robot.size)) for _ in range(3)]
+    for made, one in zip(before, Smoothing((0.03,)).command(stamped, at[order]), strict=True):
+        made[order] = one
+    stiff = replace(gears, slack=(), slack_averaged=False)
+    added = leads(gears, abb.robot, *before) - leads(stiff, abb.robot, *before)
+    mean = np.trapezoid(added.reshape(len(t), -1, abb.robot.size), dx=1.0 / 200, axis=1)
+    states = smoothing.command(stamped, t)
+    expected = leads(stiff, abb.robot, *states) + mean
+    found = leads_at(gears, abb.robot, smoothing, stamped, t, states)
+    largest = np.abs(mean).max()
+    assert largest > 3e-4
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-3 * largest)
+    # Motions are sampled as logs are compared, and the lead's rates are its own.
+    h = 1e-3
+    sampled = commanded_motion(
+        abb.robot, controller.model, smoothing, timing, (t[:, None] + [-h, 0.0, h]).ravel()
+    ).lead
+    place, speed, push = (part.reshape(len(t), 3, -1) for part in sampled)
+    np.testing.assert_allclose(place[:, 1], expected, rtol=0, atol=2e-3 * largest)
+    slope = (place[:, 2] - place[:, 0]) / (2 * h)
+    np.testing.assert_allclose(speed[:, 1], slope, rtol=0, atol=2e-2 * np.abs(slope).max())
+    bend = (speed[:, 2] - speed[:, 0]) / (2 * h)
+    np.testing.assert_allclose(push[:, 1], bend, rtol=0, atol=5e-2 * np.abs(bend).max())
 
 
 def test_a_lag_is_read_with_its_key(tmp_path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,6 +24,11 @@ MODELS = {
     "ramp": MotionModel(smoothing=(0.04, 0.04), ramp=0.05),
     "ramp alone": MotionModel(ramp=0.05),
     "elastic": MotionModel(smoothing=(0.04, 0.03, 0.02), ramp=0.03, elasticity=GEARS),
+    "slack averaged": MotionModel(
+        smoothing=(0.04, 0.05, 0.02),
+        ramp=0.03,
+        elasticity=replace(GEARS, slack=(1e-3, 3e-4), slack_averaged=True),
+    ),
     "slow start": MotionModel(smoothing=(0.05,), start_ramp=0.2),
     "lag": MotionModel(smoothing=(0.05, 0.03), elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))),
     "friction": MotionModel(servo=Servo((-1e-3, 1e-3, 2e-3))),

@@ -27,6 +27,7 @@ from flyby.core.motion.timing.timed_zones import TimedGradient
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget
 from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
 from flyby.core.spatial.pose import Pose
@@ -245,6 +246,35 @@ def test_the_reverse_of_zones_by_speed_and_by_orientation(abb, model) -> None:
             numeric = _slope(ends.q[k], i, lambda: total(zones))
             assert out.q[k][i] == pytest.approx(numeric, rel=1e-4, abs=1e-5), (k, i)
     assert np.abs(out.speed[:2]).min() > 0.01
+
+
+@pytest.mark.parametrize("longer", [0, 1])
+def test_the_reverse_of_shares_of_the_contour(abb, longer) -> None:
+    """Of two joint moves, over the share and over both moves' ends."""
+    way = np.array([0.3, -0.1, 0.2, 0.0, 0.1, 0.05])
+    q = np.array(abb.start.joints) + np.cumsum([way, (3.0 - 2.5 * longer) * way[::-1]], axis=0)
+    zone = ContourFraction(0.6)
+    moves = (MoveJ(JointTarget(tuple(q[0])), SPEED, zone), MoveJ(JointTarget(tuple(q[1])), SPEED))
+    route = abb.controller(HALF).plan(Program(moves, start=abb.start)).route
+    ends, weights = route.ends, np.random.default_rng(0).normal(size=(1, 3, 2))
+
+    def total(zone) -> float:
+        planner = ZonePlanner(make_segments(ends), route.chains, HALF, route.moves)
+        return float(np.sum(weights * planner.corners([zone]).reach))
+
+    segments = make_segments(ends)
+    corners = ZonePlanner(segments, route.chains, HALF, route.moves).corners([zone])
+    bar, out = SegmentsGradient.zeros(segments), EndsGradient.zeros(ends)
+    by_zone = ZoneGradient.zeros(1)
+    pull_corners(corners, weights, np.zeros(1), TimedGradient.zeros(0, 1), bar, out, by_zone)
+    h = 1e-6
+    numeric = (total(ContourFraction(0.6 + h)) - total(ContourFraction(0.6 - h))) / (2 * h)
+    assert by_zone.tcp[0] == pytest.approx(numeric, rel=1e-6)
+    for k in (0, 1):
+        for i in np.ndindex(2, 6):
+            numeric = _slope(ends.q[k], i, lambda: total(zone))
+            assert out.q[k][i] == pytest.approx(numeric, rel=1e-5, abs=1e-8), (k, i)
+    assert np.abs(out.q).max() > 0.01
 
 
 def _slope(array, index, value, h: float = 1e-6) -> float:

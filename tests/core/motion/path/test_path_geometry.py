@@ -263,6 +263,19 @@ def test_a_share_of_the_contour_begins_at_its_share_of_half_the_move(abb) -> Non
     np.testing.assert_allclose(path.corners.reach[0], 0.2)
 
 
+@given(fraction=st.floats(0.05, 1.0), first=st.floats(0.05, 0.4), second=st.floats(0.05, 0.4))
+def test_a_share_of_the_contour_is_as_far_on_both_sides(abb, fraction, first, second) -> None:
+    """Of the shorter of two joint moves; a line beside it is no measure of the other."""
+    moves = (
+        MoveJ(abb.joints([first, 0, 0, 0, 0, 0]), SPEED, ContourFraction(fraction)),
+        MoveJ(abb.joints([first, second, 0, 0, 0, 0]), SPEED, FINE),
+    )
+    path = abb.controller().plan(Program(moves, start=abb.start))
+    np.testing.assert_allclose(
+        path.corners.reach[0] * [first, second], 0.5 * fraction * min(first, second)
+    )
+
+
 @pytest.mark.parametrize("orientation", list(ArcOrientation))
 def test_arcs_end_at_their_target_through_the_auxiliary_point(arm, orientation) -> None:
     via, end = arm.target((0.5, 0.4, 0)), arm.target((1, 0, 0.1), (0.2, 0.3, -0.1))

@@ -56,9 +56,12 @@ def test_a_whole_one(tmp_path) -> None:
     np.testing.assert_allclose(
         robot.robot.flange_pose(q).position, KR16.flange_pose(q).position, atol=1e-6
     )
-    # One note: what of the machine data is not emulated.
-    assert [note.span.file for note in backup.notes] == ["KRC/R1/Mada/$machine.dat"]
-    assert "filters its set-points over $DEF_FLT_PTP 144 ms" in said(backup)
+    assert not backup.notes
+    # Filters of 144 and 96 ms.
+    value, origin = backup.motion["time.joint_smoothing_s"]
+    assert value == pytest.approx([0.072] * 2) and "$DEF_FLT_PTP, 144 ms" in origin
+    value, origin = backup.motion["time.smoothing_s"]
+    assert value == pytest.approx([0.048] * 2) and "$DEF_FLT_CP, 96 ms" in origin
     value, origin = backup.motion["limit.reorientation_acceleration"]
     assert value == pytest.approx(math.radians(120.0)) and "DEF_ACC_ORI1" in origin
 

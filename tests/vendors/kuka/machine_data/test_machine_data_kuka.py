@@ -8,14 +8,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.registry import find_robot
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget
+from flyby.core.program.zone import FINE
+from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.text.files import SourceFile
+from flyby.tasks.setup import RobotOptions, Setup, laid_on
 from flyby.vendors.kuka.data_list import DataList
-from flyby.vendors.kuka.machine_data import with_machine_data
+from flyby.vendors.kuka.machine_data import stated_in, with_machine_data
 
 from .data_lists import FILTER_MS, machine_data, write
 
 KR3 = find_robot("kuka/kr3-r540")
+HOME = np.array([0.1, -1.4, 1.5, 0.1, 0.8, 0.2])
 KR3_DATA = machine_data(KR3, "#KR3R540 C4SR")
 
 
@@ -38,6 +46,34 @@ def test_ranges_speeds_and_accelerations(tmp_path) -> None:
     assert "$machine.dat" in robot.origins["velocity"]
     assert robot.origins["geometry"] == KR3.origins["geometry"]
     assert not robot.spread
+
+
+def test_filters_of_set_points_are_averages(tmp_path) -> None:
+    """Of half their length, two: of lines, and of programs of joint moves alone."""
+    file = write(
+        tmp_path, "$machine.dat", KR3_DATA.replace("INT $DEF_FLT_CP=96", "$DEF_FLT_CP=120")
+    )
+    found = stated_in(file)
+    assert found["time.smoothing_s"][0] == pytest.approx([0.06, 0.06])
+    assert found["time.joint_smoothing_s"][0] == pytest.approx([5e-4 * FILTER_MS] * 2)
+    made = laid_on(Setup(find_vendor("kuka"), KR3), RobotOptions(machine_data=file))
+    model = made.vendor.motion_of(made.robot)
+    assert model.smoothing == pytest.approx((0.06, 0.06))
+    origin = model.provenance["time.joint_smoothing_s"]
+    assert origin.status == "assumed" and "$DEF_FLT_PTP, 144 ms" in (origin.source or "")
+    line = MoveL(PoseTarget(KR3.flange_pose(HOME)), Speed(tcp=0.1), FINE)
+    joints = MoveJ(JointTarget(tuple(HOME + 0.1)), Speed(), FINE)
+    controller, start = Controller(made.vendor, made.robot), JointTarget(tuple(HOME))
+    for moves, window in (((joints,), FILTER_MS), ((joints, line), 120.0)):
+        program = Program(moves, start=start)
+        path = controller.plan(program)
+        assert controller.smoothing(program, path).window == pytest.approx(1e-3 * window)
+
+
+@pytest.mark.parametrize("length", ["0", "-12", "1E9", '"x"', "1e999"])
+def test_filters_of_no_sensible_length_are_not_taken(tmp_path, length: str) -> None:
+    text = KR3_DATA.replace("INT $DEF_FLT_CP=96", f"$DEF_FLT_CP={length}")
+    assert set(stated_in(write(tmp_path, "$machine.dat", text))) == {"time.joint_smoothing_s"}
 
 
 def test_a_published_speed(tmp_path) -> None:
