@@ -11,7 +11,7 @@ import typer
 from ..core.display import counted
 from ..tasks.backup.opening import open_backup
 from ..tasks.files.outputs import check_folder, write_in
-from .output.console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn_of
 from .parameters import AsJson, Force
 
 if TYPE_CHECKING:
@@ -44,8 +44,7 @@ def import_(
         print_json(_backup_json(backup))
     else:
         _print(backup)
-    for note in backup.notes:
-        warn(str(note))
+    warn_of(backup.notes)
     if out is not None:
         _write(backup, path, out, force)
 
@@ -55,8 +54,7 @@ def _write(backup: Backup, path: Path, out: Path, force: bool) -> None:
 
     with progress("reading its programs"):
         made = station_files(backup)
-    for note in made.notes:
-        warn(str(note))
+    warn_of(made.notes)
     files = {Path(name): data for name, data in made.files.items()}
     inputs = [path] if path.is_file() else []
     for file in write_in("--out", out, files, inputs, force):

@@ -12,7 +12,7 @@ from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.free_motion import FreeMotionOptions, free_motion_with
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.tune import TuneOptions, tune_with
-from .output.console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn, warn_of
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -67,8 +67,7 @@ def free(
         _tell(found, written)
         if proof is not None:
             (print_rich if proof.proven else warn)(str(proof))
-    for note in found.notes:
-        warn(str(note))
+    warn_of(found.notes)
     if not found.proven:
         raise typer.Exit(1)
 

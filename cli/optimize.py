@@ -18,7 +18,7 @@ from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import Setup, setup_of_program, start_of, writable_robot
 from .output.console import print_json, print_table, progress
 from .output.delivery import OtherVendor, deliver
-from .output.solution_report import solution_json, tell_solution
+from .output.solution_report import gain_shown, solution_json, tell_solution
 from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ COLUMNS = (
     ("height, mm", "right"),
     ("turn, °", "right"),
     ("zone", "left"),
+    ("gained, s", "right"),
 )
 
 
@@ -138,6 +139,7 @@ def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
                 _moved(before, move),
                 *_rise_and_turn(moved.get(index)),
                 _zone(before, move),
+                gain_shown(made.gained.get(index)),
             )
         )
     return rows
@@ -195,7 +197,8 @@ def _zone(before: Move | None, move: Move) -> str:
 def _json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:
     moved = {point.move: point for point in made.moved}
     moves = [
-        _move_json(index, move, moved.get(index)) for index, move in enumerate(made.program.moves)
+        _move_json(index, move, moved.get(index)) | {"gained_s": made.gained.get(index)}
+        for index, move in enumerate(made.program.moves)
     ]
     return {**solution_json(made, cell, written), "moves": moves}
 

@@ -14,7 +14,7 @@ from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from ..tasks.files.source_places import note_json
 from ..tasks.paint import paint_with
 from ..tasks.painting.options import PaintOptions
-from .output.console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn, warn_of
 from .parameters import AsJson, Force, with_options
 
 if TYPE_CHECKING:
@@ -82,8 +82,7 @@ def _tell(found: PaintedPart, written: Sequence[Path]) -> None:
     print_rich(f"speed only: no speeds along the first curve are better by more than {gap:.1g}")
     if painting.interrupted:
         warn("the optimisation was interrupted: this is the best that it had found")
-    for note in found.notes:
-        warn(str(note))
+    warn_of(found.notes)
     if made is not None:
         tried = ", ".join(f"{std / MICRON:.2f}" for std in made.rounds)
         print_rich(f"as emulated, by round of correction: std {tried} µm")

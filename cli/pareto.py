@@ -20,7 +20,7 @@ from ..tasks.files.source_places import note_json
 from ..tasks.pareto import ParetoOptions, pareto_with
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
-from .output.console import print_json, print_rich, print_table, progress, warn
+from .output.console import print_json, print_rich, print_table, progress, warn_of
 from .parameters import AsJson, Force, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -82,8 +82,7 @@ def _written(
 
 def _tell(made: ProgramFront, written: Sequence[Sequence[Path]], plot: Path | None) -> None:
     print_table(made.columns(), made.rows())
-    for note in made.notes:
-        warn(str(note))
+    warn_of(made.notes)
     for paths in written:
         for path in paths:
             print_rich(f"wrote {path}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,7 +17,7 @@ from ..tasks.setup import setup_of_program
 from ..tasks.zones import ZoneOptions, zones_with
 from .output.console import print_json, print_table, progress
 from .output.delivery import deliver
-from .output.solution_report import solution_json, tell_solution
+from .output.solution_report import gain_shown, solution_json, tell_solution
 from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ COLUMNS = (
     ("line", "left"),
     ("zone before", "right"),
     ("after", "right"),
+    ("gained, s", "right"),
     ("no larger because of", "left"),
 )
 
@@ -68,26 +69,27 @@ def zones(
 
 
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> None:
-    print_table(COLUMNS, [_row(program, change) for change in made.zones])
+    print_table(COLUMNS, [_row(program, change, made.gained) for change in made.zones])
     tell_solution(program, made, cell, written)
 
 
-def _row(program: Path, change: ZoneChange) -> tuple[str, ...]:
+def _row(program: Path, change: ZoneChange, gained: Mapping[int, float]) -> tuple[str, ...]:
     return (
         str(change.move + 1),
         short_place(program, change.span),
         zone_shown(change.before),
         zone_shown(change.after),
+        gain_shown(gained.get(change.move)),
         change.limit,
     )
 
 
 def _json(made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:
-    zones = [_change_json(change) for change in made.zones]
+    zones = [_change_json(change, made.gained.get(change.move)) for change in made.zones]
     return {**solution_json(made, cell, written), "zones": zones}
 
 
-def _change_json(change: ZoneChange) -> dict[str, Any]:
+def _change_json(change: ZoneChange, gained: float | None) -> dict[str, Any]:
     return {
         "move": change.move + 1,
         "before": zone_shown(change.before),
@@ -95,5 +97,6 @@ def _change_json(change: ZoneChange) -> dict[str, Any]:
         "clear_to": change.clear,
         "fails_at": change.fails,
         "limit": change.limit,
+        "gained_s": gained,
         **place_json(change.span),
     }

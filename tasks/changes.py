@@ -7,11 +7,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..core.door import at_command_line, spelt, switched
-from ..core.errors import InputError, OptionError
+from ..core.door import spelt, switched
+from ..core.errors import InputError, Note, OptionError
 from .files.not_executed import not_executed_notes
 from .options import texts
 from .options.entries import ANGLE, COUNT, DISTANCE, NOT_NEGATIVE, Extent, number, value
+from .options.idle import ALL, idle_kept, idle_limits
+from .options.moves import NAMED, is_named, listed_names, moves_named, moves_to, targets
 from .setup import RobotOptions, Setup, like, start_of
 
 if TYPE_CHECKING:
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
 
 Made = TypeVar("Made", bound="Solution")
 
-ALL = "all"
-
 
 @dataclass(frozen=True, kw_only=True)
 class ChangeOptions(RobotOptions):
@@ -36,14 +36,14 @@ class ChangeOptions(RobotOptions):
     )
     free: Sequence[int | str] = value(
         (),
-        "A stop that may be passed, by the number of its move, or 'all'; may be given several "
-        "times.",
+        "A stop that may be passed: the number of its move, line:44, the name of its target, or "
+        "'all'; may be given several times.",
         several=True,
     )
     keep: Sequence[int | str] = value(
         (),
-        "A move whose path and speed the process fixes, by its number or by the name of its speed; "
-        "may be given several times.",
+        "A move whose path and speed the process fixes: its number, line:44, the name of its "
+        "target or of its speed; may be given several times.",
         several=True,
     )
 
@@ -55,7 +55,8 @@ class WaypointOptions(ChangeOptions):
     limit: Sequence[str] | Mapping[int | str, PointLimit] = value(
         (),
         "How far a via point may move: MOVE=fixed, MOVE=free, MOVE=box:MM[,DEGREES], "
-        "MOVE=joints:DEGREES or MOVE=cone:DEGREES; MOVE may be 'all'.",
+        "MOVE=joints:DEGREES or MOVE=cone:DEGREES; MOVE is a number, line:44, the name of a target "
+        "or 'all'.",
         several=True,
     )
     axes: str | Sequence[int] | None = value(
@@ -97,10 +98,8 @@ def task_of(
     from ..problems.improve.zones.sizes import pattern_for
 
     by_move, for_all = _limits(program, options.limit)
-    keep = list(map(str, options.keep))
-    kept = [move_index(program, text, "keep") for text in keep if text.isdecimal()]
-    speeds = [_speed(program, text) for text in keep if not text.isdecimal()]
-    held = {*kept, *(i for i, move in enumerate(program.moves) if move.speed.name in speeds)}
+    kept, speeds = kept_moves(program, options.keep)
+    held = {*kept, *at_speeds(program, speeds)}
     return WaypointTask(
         time_weight=weight(objective, spelt("objective")),
         keep=kept,
@@ -118,14 +117,33 @@ def task_of(
     )
 
 
-def delivered(made: Made, read_back: ProgramTexts, setup: Setup) -> Made:
+def idle_notes(program: Program, options: WaypointOptions, task: WaypointTask) -> list[Note]:
+    """Notes on options that change nothing of what is done."""
+    from ..core.program.target import JointTarget
+    from ..core.program.zone import Fine
+
+    moves = program.moves
+    passed = {i for i, move in enumerate(moves) if not isinstance(move.zone, Fine)}
+    passed |= set(task.freed)
+    notes = idle_kept(program, options.keep, passed, path=True)
+    notes += idle_limits(program, options.limit, passed)
+    by_joints = any(isinstance(moves[i].target, JointTarget) for i in passed)
+    if options.axes is not None and not by_joints:
+        why = "no via point is given by joint values"
+        notes.append(Note(f"{spelt('axes')} has no effect: {why}"))
+    return notes
+
+
+def delivered(made: Made, read_back: ProgramTexts, setup: Setup, idle: Sequence[Note] = ()) -> Made:
     """A solution with its texts, its robot, and notes on code that was not executed.
 
     Args:
         made: as an optimisation hands it out.
         read_back: that has read its program back last.
         setup: its robot.
+        idle: notes on options that had no effect.
     """
+    made = replace(made, notes=(*idle, *made.notes))
     if not made.changed:
         return made
     noted = not_executed_notes(made.original, made.program, setup.vendor)
@@ -173,18 +191,6 @@ def rounding_of(vendor: Vendor, predefined: bool) -> Rounding:
     return Rounding.of(vendor.speaks, known)
 
 
-def move_index(program: Program, text: int | str, option: str) -> int:
-    """Index of the move with a number as people count.
-
-    Raises:
-        InputError: naming the option.
-    """
-    count = len(program.moves)
-    if not str(text).isdecimal() or not 1 <= int(text) <= count:
-        raise InputError(f"{spelt(option)} {text}: the program has moves 1 to {count}")
-    return int(text) - 1
-
-
 def joint_indices(given: str | Sequence[int], count: int) -> list[int]:
     """Indices of joints by their numbers from 1.
 
@@ -207,7 +213,7 @@ def freed_stops(program: Program, free: Sequence[int | str], kept: Collection[in
 
     Args:
         program: the program.
-        free: numbers of moves, or ``all``.
+        free: moves by number, line or target, or ``all``.
         kept: indices of the moves whose zones are to stay; ``all`` leaves them out.
 
     Raises:
@@ -217,17 +223,15 @@ def freed_stops(program: Program, free: Sequence[int | str], kept: Collection[in
 
     if ALL in free:
         return [i for i in passable_stops(program) if i not in kept]
-    wrong = [text for text in free if not str(text).isdecimal()]
-    if wrong:
-        once = "; once for each move" if at_command_line() and "," in str(wrong[0]) else ""
-        raise OptionError(f"{spelt('free')} {wrong[0]}: the number of a move, or {ALL!r}{once}")
-    freed = [move_index(program, text, "free") for text in free]
-    for i in freed:
-        if i in kept:
-            raise OptionError(
-                f"{spelt('free')} {i + 1}: {spelt('keep')} has this stop stay; give one of them"
-            )
-    return freed
+    freed: list[int] = []
+    for text in free:
+        for i in moves_named(program, text, "free"):
+            if i in kept:
+                raise OptionError(
+                    f"{spelt('free')} {text}: {spelt('keep')} has this stop stay; give one of them"
+                )
+            freed.append(i)
+    return list(dict.fromkeys(freed))
 
 
 def _limits(
@@ -235,8 +239,9 @@ def _limits(
 ) -> tuple[dict[int, PointLimit], PointLimit | None]:
     """Limits by move, and the one for all others."""
     if isinstance(given, Mapping):
-        named = {move_index(program, k, "limit"): v for k, v in given.items() if k != ALL}
-        return named, given.get(ALL)
+        by_name = {name: limit for name, limit in given.items() if name != ALL}
+        named = [(i, v) for k, v in by_name.items() for i in moves_named(program, k, "limit")]
+        return dict(named), given.get(ALL)
     by_move: dict[int, PointLimit] = {}
     for_all: PointLimit | None = None
     for text in given:
@@ -244,10 +249,8 @@ def _limits(
         limit = _limit(how, text)
         if which == ALL:
             for_all = limit
-        elif which.isdecimal():
-            by_move[move_index(program, which, "limit")] = limit
         else:
-            raise OptionError(f"{spelt('limit')} {text}: {_LIMITS}")
+            by_move |= dict.fromkeys(moves_named(program, which, "limit"), limit)
     return by_move, for_all
 
 
@@ -277,19 +280,38 @@ def _limit(how: str, text: str) -> PointLimit:
     raise OptionError(f"{option}: {_LIMITS}")
 
 
-def _speed(program: Program, name: str) -> str:
-    """The name of a speed of the program."""
-    known = {move.speed.name for move in program.moves if move.speed.name is not None}
-    if name not in known:
-        names = ", ".join(sorted(known)) or "none that has a name"
-        raise InputError(
-            f"{spelt('keep')} {name or repr(name)}: a move's number, or a speed ({names})"
-        )
-    return name
+def at_speeds(program: Program, speeds: Collection[str]) -> list[int]:
+    """Indices of the moves at speeds of these names."""
+    return [i for i, move in enumerate(program.moves) if move.speed.name in speeds]
+
+
+def kept_moves(program: Program, given: Sequence[int | str]) -> tuple[list[int], list[str]]:
+    """Moves and speeds that are kept: a name is a speed's, a target's, or both.
+
+    Raises:
+        InputError: naming the option.
+    """
+    moves: list[int] = []
+    speeds: list[str] = []
+    known = list(dict.fromkeys(m.speed.name for m in program.moves if m.speed.name is not None))
+    for text in map(str, given):
+        if not is_named(text):
+            by_target = moves_to(program.moves, text)
+            if text in known:
+                speeds.append(text)
+            elif not by_target:
+                raise InputError(
+                    f"{spelt('keep')} {text or repr(text)}: {NAMED}, or a speed "
+                    f"({listed_names(known)}); targets: {listed_names(targets(program.moves))}"
+                )
+            moves += by_target
+        else:
+            moves += moves_named(program, text, "keep")
+    return list(dict.fromkeys(moves)), speeds
 
 
 _LIMITS = (
     "MOVE=fixed, MOVE=free, MOVE=box:MM, MOVE=box:MM,DEGREES, MOVE=joints:DEGREES or "
-    "MOVE=cone:DEGREES; MOVE is a number, or 'all'"
+    "MOVE=cone:DEGREES; MOVE is a number, line:44, the name of a target, or 'all'"
 )
 _MOST_JOINTS = 7

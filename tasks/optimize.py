@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..core.door import given
 from ..core.errors import OptionError
-from .changes import WaypointOptions, delivered, task_of, weight
+from .changes import WaypointOptions, delivered, idle_notes, task_of, weight
 from .files.texts import ProgramTexts
 from .options.entries import COUNT, Extent, choice, number, switch, value
 from .options.keywords import by_keywords
@@ -101,7 +101,7 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
     controller = controller_of(program, setup)
     effort = effort_of(options.starts, options.generations, options.seed)
     made = optimize_waypoints(controller, program, cell, task, effort, texts.read_back, report)
-    return delivered(made, texts, setup)
+    return delivered(made, texts, setup, idle_notes(program, options, task))
 
 
 optimize = by_keywords(optimize_with, OptimizeOptions)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.door import spelt
 from ..core.errors import InputError, OptionError
-from .changes import WaypointOptions, task_of
+from .changes import WaypointOptions, idle_notes, task_of
 from .files.texts import ProgramTexts
 from .optimize import effort_of
 from .options.entries import COUNT, Extent, choice, number, value
@@ -90,6 +90,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         texts.read_back,
         report,
     )
+    made = replace(made, notes=(*idle_notes(program, options, wishes), *made.notes))
     return ProgramFront.of(made, program, texts, setup)
 
 

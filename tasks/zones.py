@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .changes import ChangeOptions, delivered, freed_stops, move_index, rounding_of
+from .changes import ChangeOptions, at_speeds, delivered, freed_stops, kept_moves, rounding_of
 from .files.texts import ProgramTexts
 from .options.entries import switch, value
+from .options.idle import ALL, idle_kept
 from .options.keywords import by_keywords
 from .setup import CellOptions, controller_of, start_of, with_setup
 
@@ -22,7 +23,10 @@ class ZoneOptions(ChangeOptions, CellOptions):
     """How zones are made larger."""
 
     keep: Sequence[int | str] = value(
-        (), "A move whose zone stays; may be given several times.", kind=int, several=True
+        (),
+        "A move whose zone stays: its number, line:44, the name of its target or of its speed; "
+        "may be given several times.",
+        several=True,
     )
     predefined: bool = switch("Choose among the vendor's predefined zones.")
     own: bool = switch("Moves that share one datum, or compute their zone, get one of their own.")
@@ -41,13 +45,15 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
         InputError: naming the option.
         MotionError: the program cannot be driven, or collides as it is.
     """
+    from ..core.program.zone import Fine
     from ..problems.improve.zones.maximize import maximize_zones
     from ..problems.improve.zones.options import ZoneTask
     from ..problems.improve.zones.sizes import pattern_for
 
     program, setup = with_setup(program, options)
     cell = setup.surroundings(program, no_floor=options.no_floor)
-    kept = [move_index(program, number, "keep") for number in options.keep]
+    moves, speeds = kept_moves(program, options.keep)
+    kept = sorted({*moves, *at_speeds(program, speeds)})
     wanted = ZoneTask(
         clearance=options.clearance,
         freed=freed_stops(program, options.free, kept),
@@ -60,7 +66,9 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
     texts = ProgramTexts(setup, program, own=options.own)
     controller = controller_of(program, setup)
     made = maximize_zones(controller, program, cell, wanted, texts.read_back, options.say)
-    return delivered(made, texts, setup)
+    able = {i for i, move in enumerate(program.moves) if not isinstance(move.zone, Fine)}
+    able |= set(freed_stops(program, options.free, ())) if ALL in options.free else set()
+    return delivered(made, texts, setup, idle_kept(program, options.keep, able, path=False))
 
 
 zones = by_keywords(zones_with, ZoneOptions)

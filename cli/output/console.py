@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 from unicodedata import combining, east_asian_width
 
 from ...core.display import shown
+from ...core.errors import Note
 from ...core.files.archive import named_as_packed
 
 WIDE = 180
@@ -207,6 +209,17 @@ def _broken(text: str, width: int) -> list[str]:
 def warn(message: str) -> None:
     """Print a warning."""
     _complain("warning", "yellow", message)
+
+
+def warn_of(notes: Iterable[Note]) -> None:
+    """Print warnings, those that say the same of several places in one line: the first, and how
+    many there are."""
+    like: dict[str, list[Note]] = {}
+    for note in notes:
+        like.setdefault(re.sub(r"[\d.]+", "0", note.message), []).append(note)
+    for alike in like.values():
+        more = f" (and {len(alike) - 1} like it)" if len(alike) > 1 else ""
+        warn(f"{alike[0]}{more}")
 
 
 def complain_of_fault(message: str) -> None:

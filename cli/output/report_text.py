@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...core.display import counted
 from ...core.driving.driven_program import Fault
-from ...core.errors import Note, Span
+from ...core.errors import Span
 from ...core.program.program import Program
 from ...core.program.question import Question
 from ...core.source.execution.answers_text import grouped
@@ -25,7 +24,7 @@ from ...tasks.results.lines import COLUMNS as LINE_COLUMNS
 from ...tasks.results.lines import LineReport, line_row
 from ...tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
 from ...tasks.results.shares import shares
-from .console import complain_of_fault, print_rich, print_table, warn
+from .console import complain_of_fault, print_rich, print_table, warn, warn_of
 
 if TYPE_CHECKING:
     from ...core.collision.clearance import Approach
@@ -34,8 +33,6 @@ if TYPE_CHECKING:
 _FIGURES = {"velocity": "speeds", "acceleration": "accelerations"}
 MOST_LINES = 10
 """Lines that have a row of their own; the rest of them is summed up."""
-MOST_ALIKE = 3
-"""Notes that say the same of several places, before the rest of them is only counted."""
 
 
 def print_report(run: Run) -> None:
@@ -115,20 +112,8 @@ def _range(report: Report) -> str:
 
 
 def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:
-    """Print warnings and faults on stderr.
-
-    Of many notes that are alike the first is printed, and how many there are; of faults of a line
-    in a loop as well.
-    """
-    like: dict[str, list[Note]] = {}
-    for note in report.notes:
-        if not (note.asked and questions):
-            like.setdefault(re.sub(r"[\d.]+", "0", note.message), []).append(note)
-    for notes in like.values():
-        shown = notes if len(notes) <= MOST_ALIKE else notes[:1]
-        for note in shown:
-            more = f" (and {len(notes) - 1} like it)" if len(shown) < len(notes) else ""
-            warn(f"{note}{more}")
+    """Print warnings and faults on stderr; faults of a line in a loop in one line."""
+    warn_of(note for note in report.notes if not (note.asked and questions))
     print_questions(questions)
     alike: dict[tuple[object, str], list[Fault]] = {}
     for fault in report.faults:

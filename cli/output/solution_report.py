@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...tasks.files.source_places import note_json
-from .console import print_rich, print_table, warn
+from .console import print_rich, print_table, warn, warn_of
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
@@ -18,15 +18,11 @@ _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "righ
 
 def tell_solution(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:
     """Print figures before and after, notes, the proof and what was written."""
-    from ...problems.improve.solution import figure_shown
-
     rows = [
-        (row.what, row.unit, figure_shown(row.before), figure_shown(row.after), percent(row))
-        for row in made.table(cell.robot.axis_names)
+        (row.what, row.unit, *row.shown, percent(row)) for row in made.table(cell.robot.axis_names)
     ]
     print_table(_FIGURES, rows)
-    for note in made.notes:
-        warn(str(note))
+    warn_of(made.notes)
     if made.certificate is not None:
         say = print_rich if made.proven else warn
         say(f"{program}: {made.certificate}")
@@ -59,11 +55,14 @@ def _allowed(cell: Cell) -> Sequence[tuple[str, str]]:
     return () if cell.file is None else cell.allowed
 
 
+def gain_shown(seconds: float | None) -> str:
+    """Time that a change gains; empty where it is not known."""
+    return "" if seconds is None else f"{seconds:z.3f}"
+
+
 def percent(row: FigureRow) -> str:
     """The change in percent; empty where there is none, or the value before is shown as zero."""
-    from ...problems.improve.solution import figure_shown
-
-    if row.before is None or row.change is None or float(figure_shown(row.before)) == 0.0:
+    if row.change is None or float(row.shown[0]) == 0.0:
         return ""
     shown = f"{row.change:.1f}"
     return "0.0" if shown == "-0.0" else shown

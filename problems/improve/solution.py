@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from ...core.source.reading import Files
 
 
-_LARGE = 1e5
-"""From which on a figure's decimals are left out."""
+_DECIMALS = {"m/s²": 2, "mm": 2, "% of before": 1}
+"""Of figures in tables, by their unit."""
 _STILL = 1e-9
 """m and rad below which a point has not been moved."""
 
@@ -74,12 +74,12 @@ class FigureRow:
             return None
         return 100.0 * (self.after - self.before) / self.before
 
-
-def figure_shown(value: float | None) -> str:
-    """A figure as tables show it; empty where it is not known."""
-    if value is None:
-        return ""
-    return f"{value:.4f}" if abs(value) < _LARGE else f"{value:.5g}"
+    @property
+    def shown(self) -> tuple[str, str]:
+        """Both values as tables show them; empty where they are not known."""
+        decimals = _DECIMALS.get(self.unit, 4)
+        told = [None if v is None else f"{v:.{decimals}f}" for v in (self.before, self.after)]
+        return told[0] or "", told[1] or ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +113,7 @@ class Solution:
         moved: the via points that are elsewhere than before, or turned; empty where the number of
             moves has changed.
         texts: the source files that were changed, or written anew, and read back as the program.
+        gained: s at each waypoint, by the index of the move that ends there; see `seconds_gained`.
     """
 
     original: Program
@@ -123,6 +124,7 @@ class Solution:
     notes: tuple[Note, ...] = ()
     moved: tuple[Moved, ...] = ()
     texts: Files = field(default_factory=dict, repr=False)
+    gained: Mapping[int, float] = field(default_factory=dict, repr=False)
 
     def __repr__(self) -> str:
         said = "proven" if self.proven else "not proven"
@@ -136,8 +138,7 @@ class Solution:
             (
                 row.what,
                 row.unit,
-                figure_shown(row.before),
-                figure_shown(row.after),
+                *row.shown,
             )
             for row in self.table()
         ]
@@ -192,15 +193,31 @@ class Solution:
         lowest = [None if m.lowest is None else 1e3 * m.lowest for m in (before, after)]
         if lowest[0] is not None:
             rows.append(FigureRow("lowest point of the TCP", "mm", *lowest))
-        if before.energy is not None and after.energy is not None:
-            names = joints or [str(j + 1) for j in range(len(before.energy))]
-            rows += [
-                FigureRow(f"energy, joint {name}", "N² m² s", float(one), float(other))
-                for name, one, other in zip(names, before.energy, after.energy, strict=True)
-            ]
+        rows += _energy_rows(before.energy, after.energy, joints)
         clearances = [None if m.clearance is None else 1e3 * m.clearance for m in (before, after)]
         rows.append(FigureRow("proven clearance", "mm", *clearances))
         return tuple(rows)
+
+
+_COUNTS = 5e-4
+"""Share of a program's energy from which on a joint has a line."""
+
+
+def _energy_rows(
+    before: FloatArray | None, after: FloatArray | None, joints: Sequence[str]
+) -> list[FigureRow]:
+    """The energy of all joints and of those that count, in percent of all of it before."""
+    if before is None or after is None or not before.sum() > 0.0:
+        return []
+    names = joints or [str(j + 1) for j in range(len(before))]
+    whole = float(before.sum())
+    one, other = 100.0 * before / whole, 100.0 * after / whole
+    rows = [FigureRow("energy (torque²)", "% of before", 100.0, float(other.sum()))]
+    return rows + [
+        FigureRow(f"energy, joint {names[j]}", "% of before", float(one[j]), float(other[j]))
+        for j in range(len(before))
+        if max(one[j], other[j]) >= 100.0 * _COUNTS
+    ]
 
 
 def measure(controller: Controller, run: Run, certificate: Certificate | None = None) -> Measures:

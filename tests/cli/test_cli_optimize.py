@@ -114,7 +114,7 @@ def test_what_is_kept_stays(flyby: Flyby, cell: Path, program: Path, tmp_path: P
         (2, ("--limit", "2=box:-5"), "--limit 2=box:-5: ranges are zero or more"),
         (2, ("--limit", "2=box:"), "--limit 2=box:"),
         (1, ("--limit", "9=fixed"), "--limit 9: the program has moves 1 to 5"),
-        (2, ("--limit", "p2=fixed"), "--limit p2=fixed"),
+        (1, ("--limit", "p9=fixed"), "--limit p9: no move goes there"),
         (1, ("--keep", ""), "--keep ''"),
         (2, ("--keep", "2", "--free", "2"), "--free 2: --keep has this stop stay"),
         (2, ("--zones-only", "--limit", "2=fixed"), "--zones-only"),

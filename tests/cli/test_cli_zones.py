@@ -103,8 +103,8 @@ def test_stops_are_freed_by_number_or_all(flyby: Flyby, cell: Path, tmp_path: Pa
     assert flyby("zones", path, "--cell", cell, "--free", "all", "--in-place").exit_code == 0
     assert [size > 0 for size in _zones(path)] == [False, True, True, True, False]
     for status, option, text, message in (
-        (2, "--free", "x", "the number of a move, or 'all'"),
-        (2, "--free", "1,3", "the number of a move, or 'all'; once for each move"),
+        (1, "--free", "x", "no move goes there"),
+        (1, "--free", "1,3", "name moves by a number"),
         (1, "--free", "9", "moves 1 to 5"),
         (1, "--keep", "0", "moves 1 to 5"),
         (2, "--clearance", "-3", "--clearance -3: a distance in mm"),

@@ -85,7 +85,7 @@ def test_results_are_not_written_over_what_they_were_made_of(square: Path) -> No
 @pytest.mark.parametrize(
     "words",
     [
-        ("zones", "square.mod", "--keep", "v100"),
+        ("zones", "square.mod", "--clearance=-3"),
         ("identify", "logs", "--workers", "0"),
         ("pareto", "square.mod", "--no-floor"),
     ],

@@ -17,10 +17,13 @@ from ....core.program.program import Program
 from ....core.program.zone import Fine
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
-from ..progress import Report
+from ..gains import seconds_gained
+from ..progress import Progress, Report
 from ..rounding import Rounding
 from ..solution import Solution, measure, moved_points
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
+from ..zones.maximize import maximize_zones
+from ..zones.options import ZoneTask
 from .block_emulation import drivable
 from .block_search import Answer, Shared
 from .blocks import MoveBlock, cut
@@ -94,11 +97,17 @@ class _Optimization:
         self.given = self._costs(given)
         notes = list(scene_notes(self._scenes, program))
         base = with_freed_stops(self.controller, program, self.task, notes)
+        zones = self._zones_alone(program, base, read_back)
         found = self._improved(base, self.task, self.effort, notes)
+        if zones is not None and (found is None or zones.cost < found.cost):
+            found = self._beyond(zones, base) or found
         if found is not None and self.task.vias is ViaCount.CHANGE:
             found = self._counted(found)
         if found is not None:
             found = self._as_read(program, found, read_back, notes)
+        if zones is not None and zones.cost < (self._cost(given) if found is None else found.cost):
+            # Once more, as what is read back last is what is written.
+            found = self._as_read(program, zones, read_back, notes)
         before = measure(self.controller, given, proof)
         if found is None or found.cost >= self._cost(given):
             notes.append(Note("nothing better was found: this is the program as it was given"))
@@ -114,7 +123,52 @@ class _Optimization:
             found.certificate,
             tuple(notes),
             moved_points(self.controller.robot, given, found.run),
+            gained=seconds_gained(given, found.run),
         )
+
+    def _zones_alone(self, program: Program, base: Program, read_back: ReadBack) -> Counted | None:
+        """What the largest zones alone bring, with all points as they are."""
+        task = self.task
+        path = self.controller.plan(base, task.start)
+        selection = select(base, path, self.controller.robot, task)
+        changeable = {i for group in selection.zones for i in group}
+        if not changeable:
+            return None
+        self._tell("making zones alone as large as they can be")
+        wanted = ZoneTask(
+            clearance=task.clearance,
+            residual=task.residual,
+            freed=[i for i in task.freed if i in changeable],
+            pattern=task.pattern,
+            kept=[i for i in range(len(base.moves)) if i not in changeable],
+            rounding=task.rounding,
+            start=task.start,
+        )
+        try:
+            made = maximize_zones(self.controller, program, self.cell, wanted, read_back)
+        except FlybyError:
+            return None
+        if not made.changed or not made.proven or made.certificate is None:
+            return None
+        run = self.controller.run(made.program, task.start)
+        return Counted(run, made.certificate, self._cost(run), task)
+
+    def _beyond(self, zones: Counted, base: Program) -> Counted | None:
+        """What a search from the largest zones finds, where one from the program as it is has
+        found less than these; None if it is no better."""
+        if self.ended or self.task.freedom is Freedom.ZONES:
+            return None
+        pairs = zip(base.moves, zones.run.program.moves, strict=True)
+        begun = base.with_moves(tuple(replace(old, zone=new.zone) for old, new in pairs))
+        try:
+            found = self._improved(begun, self.task, self.effort, [])
+        except MotionError:
+            return None
+        return None if found is None or found.cost >= zones.cost else found
+
+    def _tell(self, stage: str) -> None:
+        if self.report is not None:
+            self.report(Progress(stage, 0, 1))
 
     @property
     def _clearance(self) -> float:

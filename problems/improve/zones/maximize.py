@@ -23,6 +23,7 @@ from ....core.program.program import Program
 from ....core.program.zone import Radius, Zone
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
+from ..gains import seconds_gained
 from ..solution import Solution, measure
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .changes import ZoneChange, changes
@@ -124,6 +125,7 @@ class _Maximization:
             measure(self._controller, after, certificate),
             certificate,
             (*larger.notes, *scene_notes(self._scenes, program)),
+            gained=seconds_gained(before, after),
             zones=changes(points, program, repair.zones, found),
         )
 
