@@ -10,38 +10,52 @@ import typer
 from ..core.errors import FlybyError, OptionError
 from ..tasks.check import CheckOptions, check_with, unread
 from ..tasks.files.source_places import place_json
+from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of, setup_of_program
 from .output.console import print_json, print_rich, print_table, progress
-from .parameters import AsJson, ProgramFile, with_options
+from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.lint.finding import Finding
+    from ..core.program.program import Program
     from ..tasks.results.findings import Findings
 
 
 @with_options
 def check(
-    program: ProgramFile, source: SourceOptions, options: CheckOptions, json: AsJson = False
+    program: ProgramFile,
+    source: SourceOptions,
+    options: CheckOptions,
+    report: PageFile = None,
+    json: AsJson = False,
+    force: Force = False,
 ) -> None:
     """Look for what goes wrong, or other than it seems: zones, limits, configurations, speeds.
 
     The exit status is 1 if there is an error among the findings.
     """
-    with progress("checking the program"):
-        robot, found = _findings(program, source, options)
+    check_page(report, [program, *source.inputs()], force)
+    with progress("checking the program") as say:
+        read, robot, found = _findings(program, source, options)
+        if report is not None:
+            say("making the page")
+        written = write_page(report, found, program=read)
     if json:
         print_json({"robot": robot, "findings": [_json(finding) for finding in found]})
     else:
         _tell(program, found)
+        for path in written:
+            print_rich(f"wrote {path}")
     if found.errors:
         raise typer.Exit(1)
 
 
 def _findings(
     program: Path, source: SourceOptions, options: CheckOptions
-) -> tuple[str | None, Findings]:
-    """The robot's name, None of a backup that cannot be read, and what is found."""
+) -> tuple[Program | None, str | None, Findings]:
+    """The program, None if it cannot be read; the robot's name, None of a backup that cannot be
+    read; and what is found."""
     named = source.robot is not None or source.cell is not None
     robot = setup_of(source).robot.name if named else None
     try:
@@ -49,8 +63,8 @@ def _findings(
     except OptionError:
         raise
     except FlybyError as error:
-        return robot, unread(error)
-    return setup_of_program(read).robot.name, check_with(read, options)
+        return None, robot, unread(error)
+    return read, setup_of_program(read).robot.name, check_with(read, options)
 
 
 def _tell(program: Path, found: Findings) -> None:

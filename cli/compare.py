@@ -11,8 +11,9 @@ import typer
 from ..core.display import counted
 from ..tasks.compare import CompareOptions, compare_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
+from ..tasks.pages.file import check_page, write_page
 from .output.console import print_json, print_rich, print_table, progress, warn
-from .parameters import AsJson, Force, with_options
+from .parameters import AsJson, Force, PageFile, with_options
 
 if TYPE_CHECKING:
     from ..identification.logs import LoggedRun
@@ -37,6 +38,7 @@ def compare(
     plot: Annotated[
         Path | None, typer.Option(help="Draw corners, deviation and speed: PNG, PDF or SVG.")
     ] = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -45,18 +47,22 @@ def compare(
     if plot is not None:
         picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, [program, *options.inputs()], replace_existing=force)
+    check_page(report, [program, *options.inputs()], force)
     with progress("reading program and log") as say:
         found = compare_with(program, replace(options, report=say))
         if plot is not None:
             write_all("--plot", {plot: found.picture(picture_kind(plot, "--plot"))})
+        if report is not None:
+            say("making the page")
+        paged = write_page(report, found)
     for note in found.notes:
         warn(note)
     if json:
         print_json(_json(found.prediction, found.run, found.scale))
         return
     _tell(found)
-    if plot is not None:
-        print_rich(f"wrote {plot}")
+    for path in (*([] if plot is None else [plot]), *paged):
+        print_rich(f"wrote {path}")
 
 
 def _tell(found: Comparison) -> None:

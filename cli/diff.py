@@ -12,9 +12,10 @@ import typer
 from ..core.errors import FlybyError, OptionError
 from ..tasks.diff.diff import diff_with
 from ..tasks.files.source_places import place_json
+from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions, read_with
 from .output.console import fail, print_json, print_rich, print_table, progress
-from .parameters import AsJson, with_options
+from .parameters import AsJson, Force, PageFile, with_options
 
 if TYPE_CHECKING:
     from ..core.difference.differences import Difference
@@ -44,12 +45,17 @@ def diff(
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print tables in Markdown, for a merge request.")
     ] = False,
+    report: PageFile = None,
     json: AsJson = False,
+    force: Force = False,
 ) -> None:
     """Compare two states: points, tools, zones, speeds, moves, code; cycle times, paths, faults.
 
     The exit status is 1 if they differ, 2 for an error; as git's external diff it is always 0.
     """
+    check_page(report, [*map(Path, paths[:2]), *source.inputs()], force)
+    if report is not None and len(paths) != 2:
+        raise OptionError("--report is of two states: name both")
     if len(paths) == 1:
         _list_moves(Path(paths[0]), source)
         return
@@ -59,8 +65,11 @@ def diff(
     if len(paths) != 2:
         raise OptionError(f"{len(paths)} paths: name the two states that are compared")
     try:
-        with progress("reading both"):
+        with progress("reading both") as say:
             found = diff_with(paths[0], paths[1], source)
+            if report is not None:
+                say("making the page")
+            written = write_page(report, found)
     except FlybyError as error:
         fail(str(error))
         raise typer.Exit(2) from None
@@ -68,6 +77,8 @@ def diff(
         print_json(_json(found))
     else:
         _tell(found, markdown=markdown)
+        for path in written:
+            print_rich(f"wrote {path}")
     if found.differs:
         raise typer.Exit(1)
 

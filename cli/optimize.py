@@ -14,12 +14,13 @@ from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json, short_place
 from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
+from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import Setup, setup_of_program, start_of, writable_robot
 from .output.console import print_json, print_table, progress
 from .output.delivery import OtherVendor, deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution
-from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
+from .parameters import AsJson, Force, InPlace, Out, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
@@ -57,6 +58,7 @@ def optimize(
     plot: Annotated[
         Path | None, typer.Option(help="Draw the cell with both paths: PNG, PDF or SVG.")
     ] = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -66,6 +68,7 @@ def optimize(
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     places.check()
+    check_page(report, places.inputs, force)
     if plot is not None:
         picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, places.inputs, force)
@@ -82,6 +85,7 @@ def optimize(
         delivery = deliver(made, setup.vendor, places, unproven=False)
         if beside is not None:
             delivery = beside.written(delivery)
+        delivery = delivery.with_page(report, say, cell)
         if plot is not None:
             say("drawing")
             drawn = _draw(plot, cell, setup, made)

@@ -12,10 +12,11 @@ import typer
 from ..core.display import counted
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
 from ..tasks.files.source_places import note_json
+from ..tasks.pages.file import check_page, write_page
 from ..tasks.paint import paint_with
 from ..tasks.painting.options import PaintOptions
 from .output.console import print_json, print_rich, print_table, progress, warn, warn_of
-from .parameters import AsJson, Force, with_options
+from .parameters import AsJson, Force, PageFile, with_options
 
 if TYPE_CHECKING:
     from ..problems.paint.coating.coat import Coat
@@ -37,6 +38,7 @@ def paint(
     out: Annotated[
         Path | None, typer.Option("--out", help="Folder for program and pictures.")
     ] = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -48,6 +50,7 @@ def paint(
     check_folder("--out", out)
     if out is not None and out.is_dir():
         check_outputs({"--out": [out / name for name in PICTURES]}, inputs, force)
+    check_page(report, inputs, force)
     with progress("reading the part") as say:
         found = paint_with(part, footprint, replace(options, report=say))
         written: list[Path] = []
@@ -57,6 +60,9 @@ def paint(
             written = write_in(
                 "--out", out, {Path(name): data for name, data in files.items()}, inputs, force
             )
+        if report is not None:
+            say("making the page")
+        written += write_page(report, found)
     if json:
         print_json(_json(found, written))
     else:

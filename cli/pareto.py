@@ -17,11 +17,12 @@ from ..tasks.files.outputs import (
     write_in,
 )
 from ..tasks.files.source_places import note_json
+from ..tasks.pages.file import check_page, write_page
 from ..tasks.pareto import ParetoOptions, pareto_with
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
 from .output.console import print_json, print_rich, print_table, progress, warn_of
-from .parameters import AsJson, Force, Out, ProgramFile, with_options
+from .parameters import AsJson, Force, Out, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.robot.model import Robot
@@ -36,6 +37,7 @@ def pareto(
     options: ParetoOptions,
     out: Out = None,
     plot: Annotated[Path | None, typer.Option(help="Draw the front: PNG, PDF or SVG.")] = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -49,6 +51,7 @@ def pareto(
     if plot is not None:
         picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, inputs, force)
+    check_page(report, inputs, force)
     with progress("reading the program") as say:
         read = read_with(program, source)
         robot = setup_of_program(read).robot
@@ -57,11 +60,16 @@ def pareto(
         if plot is not None and made.points:
             say("drawing")
             write_all("--plot", {plot: made.picture(picture_kind(plot, "--plot"))})
+        if report is not None:
+            say("making the page")
+        paged = write_page(report, made)
     drawn = plot if made.points else None
     if json:
         print_json(_json(made, robot, written, drawn))
     else:
         _tell(made, written, drawn)
+        for path in paged:
+            print_rich(f"wrote {path}")
         if out is None:
             print_rich("nothing was written: --out FOLDER writes the programs")
     if not made.proven:

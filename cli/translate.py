@@ -17,12 +17,13 @@ from ..tasks.backup.finding import find_backup
 from ..tasks.catalogue import registry
 from ..tasks.files.outputs import check_folder, encoded, write_in
 from ..tasks.files.source_places import note_json, short_place
+from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions, TextOptions, read_with
 from ..tasks.setup import setup_of_program
-from ..tasks.translate import TranslateOptions, target_of, translate_with
+from ..tasks.translate import TranslateOptions, place_of, target_of, translate_with
 from ..tasks.translate import written as written_of
 from .output.console import fail, print_json, print_rich, print_table, progress
-from .parameters import AsJson, Force, Out, ProgramFile, with_options
+from .parameters import AsJson, Force, Out, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.errors import Note
@@ -47,6 +48,7 @@ def translate(
         Path | None, typer.Option("--cell", help="Cell file: robot, base and external axes.")
     ] = None,
     out: Out = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -59,7 +61,10 @@ def translate(
             f"of {vendor}) or --cell: corners and times are taken from its motion"
         )
     source = text.for_robot(old, cell)
+    check_page(report, [program, *source.inputs()], force)
     if source.entry == ALL:
+        if report is not None:
+            raise OptionError("--report is of one program: name one entry, not all")
         if json:
             raise OptionError("--json is of one program: name one entry, not all")
         _each(program, source, options, out, force)
@@ -68,10 +73,16 @@ def translate(
         after = target_of(options)
         read, made, sources = _translated(program, source, replace(options, report=say))
         written = _put(out, encoded(sources), [program, *source.inputs()], force)
+        if report is not None:
+            say("making the page")
+        place = place_of(options, setup_of_program(read))
+        paged = write_page(report, made, place=place, sources=sources)
     if json:
         print_json(_json(made, setup_of_program(read).robot, after.robot, written))
     else:
         _tell(program, made, after.robot, list(sources), written)
+        for path in paged:
+            print_rich(f"wrote {path}")
 
 
 def _translated(

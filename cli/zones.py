@@ -12,13 +12,14 @@ import typer
 from ..core.program.zone import zone_shown
 from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json, short_place
+from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
 from ..tasks.zones import ZoneOptions, zones_with
 from .output.console import print_json, print_table, progress
 from .output.delivery import deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution
-from .parameters import AsJson, Force, InPlace, Out, ProgramFile, with_options
+from .parameters import AsJson, Force, InPlace, Out, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
@@ -46,6 +47,7 @@ def zones(
         bool,
         typer.Option("--unproven", help="Write the program even if its clearance is not proven."),
     ] = False,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -55,12 +57,13 @@ def zones(
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     places.check()
+    check_page(report, places.inputs, force)
     with progress("reading the program") as say:
         read = read_with(program, source)
         setup = setup_of_program(read)
         cell = setup.surroundings(read, no_floor=options.no_floor)
         made = zones_with(read, replace(options, report=say))
-        delivery = deliver(made, setup.vendor, places, unproven)
+        delivery = deliver(made, setup.vendor, places, unproven).with_page(report, say, cell)
     if json:
         print_json(_json(made, cell, delivery.written))
     else:

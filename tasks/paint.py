@@ -72,7 +72,7 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
         return PaintedPart(source, painting, None, {}, inputs)
     options.say("the robot's way of holding the gun")
     made, sources = _executed(painting, station, drive, limits.speed, options.say)
-    return PaintedPart(source, painting, made, sources, inputs)
+    return PaintedPart(source, painting, made, sources, inputs, station)
 
 
 paint = by_keywords(paint_with, PaintOptions)

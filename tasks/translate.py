@@ -158,6 +158,20 @@ def _cell_of(before: Setup, after: Setup, place: Pose) -> Cell | None:
     )
 
 
+def place_of(options: TranslateOptions, before: Setup) -> Pose:
+    """The new robot's world in the old one's.
+
+    Args:
+        options: that may say it.
+        before: the old robot.
+    """
+    return _placed(options.base, before)
+
+
+def _placed(base: str | Pose | None, before: Setup) -> Pose:
+    return before.robot.base if base is None else pose(base, "base")
+
+
 def carried(
     program: Program,
     before: Setup,
@@ -182,7 +196,7 @@ def carried(
 
     reading = program.reading
     answers = reading.options.answers.signals if isinstance(reading, Reading) else {}
-    place = before.robot.base if base is None else pose(base, "base")
+    place = _placed(base, before)
     made = translate(
         program,
         (before.vendor, before.robot),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,11 +14,13 @@ from ...core.errors import FlybyError, Note
 from ...tasks.files.not_executed import not_executed_notes, refuse_not_executed
 from ...tasks.files.outputs import check_outputs, write_in
 from ...tasks.files.places import FilePlaces
+from ...tasks.pages.file import write_page
 from ...tasks.setup import Setup
 from ...tasks.translate import carried
 from .console import print_rich
 
 if TYPE_CHECKING:
+    from ...core.cell.cell import Cell
     from ...core.language import Sources
     from ...core.program.program import Program
     from ...core.vendor import Vendor
@@ -40,6 +42,13 @@ class Delivery:
     vendor: Vendor
     places: FilePlaces
     written: Sequence[Path]
+
+    def with_page(self, file: Path | None, say: Callable[[str], object], cell: Cell) -> Delivery:
+        """The same with the page of the solution in its cell, if it has a file."""
+        if file is None:
+            return self
+        say("making the page")
+        return replace(self, written=[*self.written, *write_page(file, self.made, cell=cell)])
 
     def end(self, told: bool) -> None:
         """Say that nothing was written, if nothing was to be, and give the exit status.

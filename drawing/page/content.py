@@ -386,7 +386,8 @@ class PageTrack:
         clearance: to the cell.
         parts: that are handled.
         proof: of it.
-        ghost: whether it is drawn as a ghost beside another.
+        ghost: whether it is drawn as a ghost beside the solid one of its group.
+        group: tracks of one group are shown together.
     """
 
     name: str
@@ -403,6 +404,7 @@ class PageTrack:
     parts: Sequence[PagePart] = ()
     proof: PageProof | None = None
     ghost: bool = False
+    group: str = ""
 
 
 @dataclass(frozen=True)

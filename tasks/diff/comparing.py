@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from ...core.robot.joint import Joint
     from ...core.spatial.pose import Pose
     from ..read import SourceOptions
+    from ..results.runs import Run
 
 SAME_TIME = 5e-4
 """s, and m of distance between paths: what no user would call a difference."""
@@ -78,6 +79,7 @@ class StateDifference:
         differences: of data and moves.
         files: of source texts.
         routines: how each is driven, whether it differs or not.
+        runs: of each routine before and after; None where it cannot be driven, or is not there.
     """
 
     before: Path
@@ -85,6 +87,9 @@ class StateDifference:
     differences: tuple[Difference, ...]
     files: tuple[FileDifference, ...]
     routines: tuple[RoutineDifference, ...]
+    runs: Mapping[str, tuple[Run | None, Run | None]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
 
     @property
     def differs(self) -> bool:
@@ -102,16 +107,19 @@ def compared(old: Path, new: Path, options: SourceOptions) -> StateDifference:
     found = _once([*_of_stations(one, other), *_of_programs(one, other)])
     order = list(Differing)
     found.sort(key=lambda difference: order.index(difference.subject))
+    pairs = list(paired(*_called_alike(one.routines, other.routines)))
     return StateDifference(
         old,
         new,
         tuple(found),
         file_differences(_called_as(other, one), other.texts),
-        tuple(
-            _driven(name, a, b)
-            for name, a, b in paired(*_called_alike(one.routines, other.routines))
-        ),
+        tuple(_driven(name, a, b) for name, a, b in pairs),
+        {name: (_run(a), _run(b)) for name, a, b in pairs},
     )
+
+
+def _run(side: Routine | None) -> Run | None:
+    return None if side is None else side.run
 
 
 def _called_as(other: StationState, one: StationState) -> Mapping[str, str]:

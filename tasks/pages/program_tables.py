@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ...core.errors import Note
 from ...core.program.program import Program
 from ...drawing.page.content import PageCell, PageColumn, PageMove, PageRow, PageShare, PageTable
 from ..results.report import MoveReport, Report, zone_text
@@ -142,10 +143,19 @@ def faults_table(report: Report, sources: SourceList, track: int) -> PageTable |
     return PageTable("Faults", _FAULTS, rows) if rows else None
 
 
-def notes_table(report: Report, sources: SourceList, track: int) -> PageTable | None:
-    """A row a note; None without any."""
+def notes_rows(
+    notes: Sequence[Note], report: Report, sources: SourceList, track: int
+) -> list[PageTable]:
+    """A table with a row a note; nothing without any.
+
+    Args:
+        notes: of the result.
+        report: of the run that they are about.
+        sources: files of the page.
+        track: of the run.
+    """
     rows = []
-    for note in report.notes:
+    for note in notes:
         source, line = sources.place(track, note.span)
         number = None if note.move is None else float(note.move + 1)
         t = None
@@ -154,4 +164,4 @@ def notes_table(report: Report, sources: SourceList, track: int) -> PageTable | 
             t = move.begin if move.driven else None
         cells = (float(line) if line else None, number, note.message)
         rows.append(PageRow(cells, "warning", track, t, note.move, source, line))
-    return PageTable("Notes", _NOTES, rows) if rows else None
+    return [PageTable("Notes", _NOTES, rows)] if rows else []

@@ -7,16 +7,14 @@ from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError
+from ...core.errors import FlybyError, Span
 from ...core.program.tool import Tool, WorkObject
 from ...drawing.page.arms import Nodes, page_arm
 from ...drawing.page.content import (
     Page,
     PageArm,
     PageClearance,
-    PageProof,
     PageSource,
-    PageTable,
     PageTrack,
 )
 from ...drawing.page.curves import CHARTS
@@ -37,7 +35,7 @@ from .program_tables import (
     causes_table,
     faults_table,
     moves_table,
-    notes_table,
+    notes_rows,
     page_moves,
     page_shares,
 )
@@ -45,6 +43,7 @@ from .sources import SourceList
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
+    from ...core.collision.proof.verdict import Certificate
     from ...core.handling.handling import Handling
     from ..results.runs import Run
 
@@ -62,13 +61,22 @@ class PageDraft:
     tracks: list[PageTrack] = field(default_factory=list)
     sources: SourceList = field(default_factory=SourceList)
 
-    def drive(self, runs: Sequence[Run], cell: Cell | None, names: Sequence[str] = ("",)) -> None:
+    def drive(
+        self,
+        runs: Sequence[Run],
+        cell: Cell | None,
+        names: Sequence[str] = ("",),
+        group: str = "",
+        ghosts: int | None = None,
+    ) -> None:
         """Add runs of one robot in one cell, each as a track.
 
         Args:
             runs: of one robot.
             cell: what stands around; None for nothing.
-            names: of the tracks; all but the last are drawn as ghosts.
+            names: of the tracks.
+            group: of the tracks.
+            ghosts: how many of them, the first, are drawn as ghosts; None for all but the last.
 
         Raises:
             InputError: a mesh cannot be used.
@@ -80,12 +88,12 @@ class PageDraft:
             used = tools_and_frames(run)
             tools |= dict.fromkeys(used[0])
             frames |= dict.fromkeys(used[1])
-        arm = page_arm(robot, cell, tools, frames)
-        self.arms.append(arm)
+        self.arms.append(page_arm(robot, cell, tools, frames))
         for k, (run, name) in enumerate(zip(runs, names, strict=True)):
-            self._track(run, cell, name, ghost=k < len(runs) - 1)
+            ghost = k < (len(runs) - 1 if ghosts is None else ghosts)
+            self._track(run, cell, name, group, ghost=ghost)
 
-    def _track(self, run: Run, cell: Cell | None, name: str, *, ghost: bool) -> None:
+    def _track(self, run: Run, cell: Cell | None, name: str, group: str, *, ghost: bool) -> None:
         index, arm_index = len(self.tracks), len(self.arms) - 1
         arm, robot, report = self.arms[arm_index], run.robot, run.report
         nodes, trajectory = Nodes.of(robot), run.trajectory
@@ -118,12 +126,20 @@ class PageDraft:
                 _clearance(run, cell, handling),
                 parts,
                 ghost=ghost,
+                group=group,
             )
         )
 
-    def prove(self, track: int, proof: PageProof | None) -> None:
-        """Lay a proof on a track."""
-        self.tracks[track] = replace(self.tracks[track], proof=proof)
+    def prove(self, track: int, proof: Certificate, run: Run, cell: Cell) -> None:
+        """Lay the proof of a run on its track."""
+        from ...drawing.page.proofs import page_proof
+
+        handling = handling_in(run, cell)
+        parts = None
+        if handling is not None and proof.move is not None:
+            parts = handling.arrangements[proof.move]
+        told = page_proof(proof, cell, run.program, parts)
+        self.tracks[track] = replace(self.tracks[track], proof=told)
 
     def files(self) -> list[PageSource]:
         """The source files."""
@@ -165,25 +181,26 @@ def made_by() -> str:
         return "flyby"
 
 
-def run_page(run: Run, kind: str = "emulate", tables: Sequence[PageTable] = ()) -> Page:
+def run_page(run: Run, kind: str = "emulate", spans: Sequence[Span | None] = ()) -> Page:
     """The page of a driven program.
 
     Args:
         run: as `flyby.emulate` gives it.
         kind: what was done.
-        tables: that stand before those of the run.
+        spans: further places in the source that the page shows.
 
     Raises:
         InputError: a mesh cannot be used.
     """
     draft = PageDraft()
     draft.drive([run], cell_of(run))
+    draft.sources.add(run.program, 0, spans)
     report = run.report
-    own = [
+    tables = [
         causes_table(report, 0),
         moves_table(report, draft.sources, 0),
         faults_table(report, draft.sources, 0),
-        notes_table(report, draft.sources, 0),
+        *notes_rows(report.notes, report, draft.sources, 0),
     ]
     return Page(
         f"{run.program.name} on {run.robot.name}",
@@ -193,7 +210,7 @@ def run_page(run: Run, kind: str = "emulate", tables: Sequence[PageTable] = ()) 
         draft.arms,
         draft.tracks,
         draft.files(),
-        [*tables, *(table for table in own if table is not None)],
+        [table for table in tables if table is not None],
         CHARTS,
         notes=[str(fault) for fault in run.faults[:3]],
         made_by=made_by(),

@@ -14,6 +14,7 @@ from ...core.notebook import page, picture, table
 from ...drawing.coat import GunCurve, Painted, draw_curve, draw_map, draw_spread, draw_strokes
 from ...problems.paint.coating.coat import Coat
 from ...problems.paint.executable.execute import Executable
+from ...problems.paint.executable.station import Station
 from ...problems.paint.painting import Painting
 from ...problems.paint.spray.footprint_file import FootprintSource
 from ...problems.paint.spray.strokes import section
@@ -45,6 +46,7 @@ class PaintedPart:
         made: the program with its coat as emulated; None without a robot.
         texts: of the program, read back, by file name.
         inputs: the files that it was made from; they are not written over.
+        station: robot, gun and the part's place; None without a robot.
     """
 
     source: FootprintSource
@@ -52,6 +54,7 @@ class PaintedPart:
     made: Executable | None
     texts: Mapping[str, str]
     inputs: tuple[Path, ...] = ()
+    station: Station | None = None
 
     @property
     def coats(self) -> dict[str, Coat]:

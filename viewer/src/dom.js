@@ -23,24 +23,23 @@ const ICONS = {
   print: "M4 1.5h8V5H4zM1.5 6h13v6H12v-2H4v2H1.5zM5 11h6v3.5H5z",
 };
 
-export function icon(name) {
-  const space = "http://www.w3.org/2000/svg";
-  const svg = document.createElementNS(space, "svg");
-  const path = document.createElementNS(space, "path");
-  svg.setAttribute("viewBox", "0 0 16 16");
-  svg.setAttribute("class", "icon");
-  svg.setAttribute("aria-hidden", "true");
-  path.setAttribute("d", ICONS[name]);
-  svg.append(path);
-  return svg;
+/** An element of a drawing. */
+export function svg(tag, attributes = {}, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
 }
+
+export const icon = (name) =>
+  svg("svg", { viewBox: "0 0 16 16", class: "icon", "aria-hidden": "true" }, svg("path", { d: ICONS[name] }));
 
 export const seconds = (t) => `${t.toFixed(3)} s`;
 
 /** A number with as many decimals as its size asks for. */
 export function number(value, digits = null) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
-  if (digits !== null) return value.toFixed(digits);
+  if (digits !== null) return (Math.round(value * 10 ** digits) / 10 ** digits + 0).toFixed(digits);
   const size = Math.abs(value);
   if (size < 5e-4) return "0";
   return value.toFixed(size >= 100 || size === 0 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);

@@ -41,17 +41,33 @@ function shareBar(shares) {
 
 /** Which track is the solid one, and how two run together. */
 function choice(session) {
-  const named = session.tracks.filter((track) => track.name);
-  if (named.length < 2 || session.page.front) return null;
-  const buttons = named.map((track) =>
-    h("button", { onclick: () => session.choose(track.index) }, `${track.name} `, h("small", {}, `${track.duration.toFixed(3)} s`)),
-  );
-  const mark = () => buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(named[k].index === session.active)));
+  const groups = [...new Set(session.tracks.map((track) => track.group))];
+  const many = groups.length > 1 || session.tracks.length > 3;
+  if (session.tracks.length < 2) return null;
+  const list = h("select", { "aria-label": "which motion", onchange: () => session.choose(+list.value) });
+  session.tracks.forEach((track, k) => list.append(h("option", { value: k }, `${track.group} ${track.name}`.trim())));
+  list.hidden = !many;
+  const buttons = h("div", { class: "segments" });
+  const mark = () => {
+    list.value = String(session.active);
+    const group = session.tracks.filter((track) => track.group === session.track.group && track.name);
+    buttons.replaceChildren(
+      ...group.map((track) =>
+        h(
+          "button",
+          { onclick: () => session.choose(track.index), "aria-pressed": String(track === session.track) },
+          `${track.name} `,
+          h("small", {}, `${track.duration.toFixed(3)} s`),
+        ),
+      ),
+    );
+    buttons.hidden = group.length > 3 || group.length < 2;
+  };
   session.on("track", mark);
   mark();
   const sync = session.page.together
     ? h("select", { "aria-label": "how tracks run together", onchange: () => session.synchronise(sync.value) },
         h("option", { value: "clock" }, "one clock"), h("option", { value: "waypoints" }, "waypoint by waypoint"))
     : null;
-  return h("div", { class: "choice" }, h("div", { class: "segments" }, ...buttons), sync);
+  return h("div", { class: "choice" }, list, buttons, sync);
 }

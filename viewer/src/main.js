@@ -2,8 +2,10 @@
 
 import uPlotStyle from "uplot/dist/uPlot.min.css";
 import style from "./styles.css";
+import { coatDrawing } from "./coat.js";
 import { readPage } from "./decode.js";
 import { h } from "./dom.js";
+import { frontDrawing } from "./front.js";
 import { header } from "./header.js";
 import { help, keys } from "./keys.js";
 import { Overlay } from "./overlay.js";
@@ -69,7 +71,11 @@ function start(page) {
   const transport = new Transport(session, parts.transport);
   const plots = new PlotPane(session, parts.plots);
   const source = new SourcePane(session, parts.source);
-  const tables = new TablePane(session, parts.tables);
+  const drawings = [
+    ...(page.front ? [frontDrawing(session)] : []),
+    ...(page.coat ? [coatDrawing(page.coat)] : []),
+  ];
+  const tables = new TablePane(session, parts.tables, drawings);
   keys({ session, transport, view, overlay, tables, theme: turn });
   dress();
   printing(parts.scene, view);

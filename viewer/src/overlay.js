@@ -5,7 +5,7 @@ import { css, kindOf, KINDS, REST, viridis } from "./colours.js";
 import { h, number } from "./dom.js";
 import { VIEWS } from "./scene.js";
 
-const OPTIONS = { programmed: "programmed path", zones: "zones", flags: "waits, outputs", frames: "frames", labels: "names", robot: "robot", obstacles: "cell" };
+const OPTIONS = { programmed: "programmed path", zones: "zones", flags: "waits, outputs", frames: "frames", labels: "names", robot: "robot", obstacles: "cell", coat: "coat" };
 
 export class Overlay {
   constructor(session, view, host) {
@@ -41,13 +41,14 @@ export class Overlay {
     this.followed = h("button", { title: "follow the TCP (f)", "aria-pressed": "false", onclick: () => this.follow() }, "follow TCP");
     const colours = h("select", { "aria-label": "colour of the path", onchange: () => this.recolour(colours.value) });
     for (const [key, { name, chart }] of Object.entries(COLOURINGS)) {
-      const known = session.tracks.some((track) => (chart ? track.channel(chart) : key !== "limit" || track.data.limits));
-      if (known) colours.append(h("option", { value: key }, name));
+      const usable = session.tracks.some((track) => (chart ? track.channel(chart) : key === "limit" ? track.data.limits : key !== "spray" || view.coat));
+      if (usable) colours.append(h("option", { value: key }, name));
     }
     this.colours = colours;
     this.traces = h("select", { "aria-label": "trace of a link", onchange: () => view.traceNode(this.traces.value === "" ? null : +this.traces.value) });
     this.fillTraces();
-    const switches = Object.entries(OPTIONS).map(([key, name]) => {
+    const known = Object.entries(OPTIONS).filter(([key]) => key !== "coat" || view.coat);
+    const switches = known.map(([key, name]) => {
       const box = h("input", { type: "checkbox", checked: view.show[key], onchange: () => this.set(key, box.checked) });
       return h("label", {}, box, name);
     });
@@ -139,7 +140,7 @@ export class Overlay {
 
   /** Where the robot is, in words. */
   tell() {
-    const { session } = this;
+    const { session, view } = this;
     const { track } = session;
     if (!track) return;
     const t = session.timeOf(track);
@@ -152,6 +153,8 @@ export class Overlay {
     if (speed) rows.push(["TCP", `${number(track.value(speed, t), 0)} mm/s`]);
     if (track.data.limits) rows.push(["limit", rest ? rest.text : limit ?? "standing still"]);
     const near = track.clearanceAt(t);
+    const spraying = view.coat?.sprays(t);
+    if (spraying !== undefined) rows.push(["gun", spraying ? "on" : "off"]);
     if (near) rows.push(["clearance", `${number(1e3 * near.distance, 1)} mm`], ["", `${near.pair[0]} – ${near.pair[1]}`]);
     this.state.replaceChildren(...rows.flatMap(([name, text]) => [h("dt", {}, name), h("dd", {}, text)]));
   }

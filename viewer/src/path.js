@@ -27,6 +27,7 @@ export const COLOURINGS = {
   limit: { name: "what limits" },
   clearance: { name: "clearance", chart: "clearance", unit: "mm" },
   power: { name: "mechanical power", chart: "energy", unit: "kW" },
+  spray: { name: "gun on, off" },
   plain: { name: "plain" },
 };
 const PROGRAMMED = { light: 0x8a8f94, dark: 0x7d858c };
@@ -98,6 +99,10 @@ export class PathView {
     if (this.view.colourBy === "limit") {
       const names = this.track.data.limits?.names ?? [];
       return { colours: Array.from(times, (t) => rgb(kindOf(names[this.track.limitAt(t)]).colour)) };
+    }
+    if (this.view.colourBy === "spray") {
+      const [on, off] = this.view.theme === "dark" ? ["#f0b050", "#59636c"] : ["#0b5cad", "#b9bfc5"];
+      return { colours: Array.from(times, (t) => rgb(this.view.coat?.sprays(t) ? on : off)) };
     }
     const channel = by.chart && this.track.channel(by.chart);
     if (!channel) return { colours: Array.from(times, () => rgb(this.view.theme === "dark" ? "#7db7f0" : "#0b5cad")) };

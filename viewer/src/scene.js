@@ -20,6 +20,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { columnMajor } from "./kinematics.js";
+import { CoatView } from "./coat.js";
 import { PathView } from "./path.js";
 import { bodyObject } from "./solids.js";
 
@@ -93,7 +94,7 @@ export class SceneView {
     Object.assign(this, { session, host });
     this.theme = "light";
     this.follow = false;
-    this.show = { zones: true, programmed: true, frames: true, flags: true, labels: true, robot: true, obstacles: true };
+    this.show = { zones: true, programmed: true, frames: true, flags: true, labels: true, robot: true, obstacles: true, coat: true };
     this.colourBy = "speed";
     this.trace = null;
     this.drawn = 0;
@@ -107,6 +108,7 @@ export class SceneView {
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.touch());
+    this.coat = session.page.coat ? new CoatView(session.page.coat) : null;
     this.lights();
     new ResizeObserver(() => this.resize()).observe(host);
     this.rebuild();
@@ -135,21 +137,30 @@ export class SceneView {
     const shown = session.shown();
     const around = new Set();
     this.arms = shown.map((track) => {
-      const ghost = track !== session.track && track.data.arm === session.track.data.arm;
-      const first = !around.has(track.data.arm ?? 0);
-      around.add(track.data.arm ?? 0);
-      return new ArmView(track, { ghost, theme, around: first });
+      const first = !around.has(track.arm);
+      around.add(track.arm);
+      return new ArmView(track, { ghost: session.isGhost(track), theme, around: first });
     });
     for (const arm of this.arms) this.root.add(arm.group);
     this.paths = shown.map((track) => new PathView(this, track, this.arms[shown.indexOf(track)]));
     this.frames = this.frameObjects();
-    this.gap = gapLine();
-    this.root.add(this.gap);
+    this.gap = gapLine(0x009e73);
+    this.tightest = gapLine(0xd0342c);
+    this.root.add(this.gap, this.tightest);
+    this.proof();
+    this.coat?.build(this);
     this.scene.background?.dispose?.();
     this.renderer.setClearColor(BACKGROUND[theme]);
     this.grid();
     this.applyShow();
     this.pose();
+  }
+
+  /** Where the active track's proof is tightest. */
+  proof() {
+    const proof = this.session.track?.data.proof;
+    this.tightest.visible = Boolean(proof?.first);
+    if (proof?.first) drawGap(this.tightest, proof);
   }
 
   frameObjects() {
@@ -190,6 +201,7 @@ export class SceneView {
       for (let k = 0; k < world.length; k += 3) box.expandByPoint(new Vector3(world[k], world[k + 1], world[k + 2]));
     }
     this.pose();
+    if (this.coat) box.expandByObject(this.coat.mesh);
     if (box.isEmpty()) box.set(new Vector3(-1, -1, 0), new Vector3(1, 1, 1));
     return box;
   }
@@ -223,6 +235,7 @@ export class SceneView {
 
   applyShow() {
     for (const path of this.paths) path.apply(this.show);
+    if (this.coat) this.coat.mesh.visible = this.show.coat;
     for (const { object } of this.frames) object.visible = this.show.frames;
     for (const arm of this.arms) {
       arm.group.traverse((object) => {
@@ -253,10 +266,7 @@ export class SceneView {
     const near = track?.clearanceAt(this.session.timeOf(track));
     this.gap.visible = Boolean(near) && this.show.obstacles;
     if (near) {
-      const points = this.gap.geometry.attributes.position;
-      points.setXYZ(0, ...near.first);
-      points.setXYZ(1, ...near.second);
-      points.needsUpdate = true;
+      drawGap(this.gap, near);
       this.gap.material.color.set(near.distance < near.wanted || near.distance <= 0 ? 0xd55e00 : 0x009e73);
     }
     if (this.follow && track) {
@@ -307,13 +317,20 @@ export class SceneView {
   }
 }
 
-function gapLine() {
+function gapLine(colour) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(6), 3));
-  const line = new Line(geometry, new LineBasicMaterial({ color: 0x009e73, depthTest: false }));
+  const line = new Line(geometry, new LineBasicMaterial({ color: colour, depthTest: false }));
   line.renderOrder = 10;
   line.frustumCulled = false;
   return line;
+}
+
+function drawGap(line, { first, second }) {
+  const points = line.geometry.attributes.position;
+  points.setXYZ(0, ...first);
+  points.setXYZ(1, ...second);
+  points.needsUpdate = true;
 }
 
 function dispose(root) {

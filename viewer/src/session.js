@@ -22,15 +22,22 @@ export class Session extends EventTarget {
     return this.tracks[this.active];
   }
 
-  /** Tracks in the scene: the active one, ghosts beside it, other robots. */
+  /** Tracks in the scene, the active one first: its group's ghosts beside a solid one, the solid
+   * one beside a ghost; of a group without ghosts all robots. */
   shown() {
-    if (!this.track) return [];
-    const ghosts = this.tracks.filter((track) => track.ghost && track !== this.track);
-    const beside = this.track.ghost ? [this.tracks.filter((track) => !track.ghost).at(-1)] : ghosts;
-    const others = this.tracks.filter(
-      (track) => !track.ghost && track.data.arm !== this.track.data.arm && track !== this.track,
-    );
-    return [this.track, ...beside.filter(Boolean), ...others];
+    const { track } = this;
+    if (!track) return [];
+    const group = this.tracks.filter((one) => one.group === track.group && one !== track);
+    const ghosts = group.filter((one) => one.ghost);
+    if (track.ghost) return [track, ...group.filter((one) => !one.ghost).slice(-1)];
+    if (ghosts.length) return [track, ...ghosts];
+    return [track, ...group.filter((one) => one.arm !== track.arm)];
+  }
+
+  /** Whether a track is drawn as a ghost beside the active one. */
+  isGhost(track) {
+    const paired = this.tracks.some((one) => one.group === this.track.group && one.ghost);
+    return paired && track !== this.track;
   }
 
   get duration() {

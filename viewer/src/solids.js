@@ -59,7 +59,7 @@ const GHOST = { light: 0x2f6fb3, dark: 0x7db7f0 };
 
 function material(role, ghost, theme, number) {
   const looks = LOOKS[theme];
-  if (ghost) return new MeshLambertMaterial({ color: GHOST[theme], transparent: true, opacity: 0.22, depthWrite: false });
+  if (ghost) return new MeshLambertMaterial({ color: GHOST[theme], transparent: true, opacity: 0.22, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 });
   const colour = role === "link" && number % 2 ? looks.joint : looks[role];
   const opacity = SEEN_THROUGH[role] ?? 1;
   return new MeshLambertMaterial({

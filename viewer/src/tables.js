@@ -5,9 +5,9 @@ import { h } from "./dom.js";
 const MOST_ROWS = 3000;
 
 export class TablePane {
-  constructor(session, host) {
+  constructor(session, host, drawings = []) {
     Object.assign(this, { session, host });
-    this.tables = session.page.tables ?? [];
+    this.tables = [...drawings, ...(session.page.tables ?? [])];
     this.at = 0;
     this.order = null;
     this.tabs = h("div", { class: "tabs", role: "tablist" });
@@ -26,9 +26,9 @@ export class TablePane {
       ...this.tables.map((table, k) =>
         h(
           "button",
-          { role: "tab", class: table.rows.some((row) => row.level === "error") ? "bad" : "", onclick: () => this.open(k) },
+          { role: "tab", class: table.rows?.some((row) => row.level === "error") ? "bad" : "", onclick: () => this.open(k) },
           table.title,
-          table.rows.length && (table.rows.some((row) => row.level) || table.title === "Moves")
+          table.rows?.length && (table.rows.some((row) => row.level) || table.title === "Moves")
             ? h("span", { class: "count" }, String(table.rows.length))
             : null,
         ),
@@ -43,6 +43,7 @@ export class TablePane {
     [...this.tabs.children].forEach((tab, i) => tab.setAttribute("aria-selected", String(i === k)));
     this.note.textContent = this.tables[k].note ?? "";
     this.note.hidden = !this.tables[k].note;
+    this.filter.hidden = Boolean(this.tables[k].draw);
     this.fill();
   }
 
@@ -69,10 +70,17 @@ export class TablePane {
 
   fill() {
     const table = this.tables[this.at];
+    if (table.draw) {
+      this.drawn = [];
+      this.body.replaceChildren(table.draw());
+      return;
+    }
     const rows = this.rows();
+    const filled = table.columns.map((_, k) => !table.rows.length || table.rows.some((row) => (row.cells[k] ?? "") !== ""));
     const numeric = table.columns.map((_, k) => table.rows.some((row) => typeof row.cells[k] === "number"));
     const most = table.columns.map((_, k) => Math.max(...table.rows.map((row) => (typeof row.cells[k] === "number" ? row.cells[k] : 0)), 1e-12));
     const head = table.columns.map((column, k) => {
+      if (!filled[k]) return null;
       const sorted = this.order?.column === k ? (this.order.down ? "descending" : "ascending") : null;
       return h(
         "th",
@@ -80,19 +88,20 @@ export class TablePane {
         h("button", { onclick: () => this.sort(k) }, column.title, column.unit ? h("small", {}, ` ${column.unit}`) : null),
       );
     });
-    const body = rows.slice(0, MOST_ROWS).map((row) => this.row(row, table, numeric, most));
+    const body = rows.slice(0, MOST_ROWS).map((row) => this.row(row, table, numeric, most, filled));
     this.drawn = body;
     const left = rows.length - body.length;
     this.body.replaceChildren(
-      h("table", {}, h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...body)),
+      h("table", {}, h("thead", {}, h("tr", {}, ...head.filter(Boolean))), h("tbody", {}, ...body)),
       left > 0 ? h("p", { class: "quiet" }, `… and ${left} more rows: filter them`) : "",
       rows.length ? "" : h("p", { class: "quiet" }, table.rows.length ? "no row matches" : "nothing"),
     );
     this.mark();
   }
 
-  row(row, table, numeric, most) {
+  row(row, table, numeric, most, filled) {
     const cells = row.cells.map((cell, k) => {
+      if (!filled[k]) return null;
       const column = table.columns[k];
       if (typeof cell === "number") {
         const td = h("td", { class: "right" }, cell.toFixed(column.digits ?? 0));

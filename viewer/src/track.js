@@ -23,6 +23,7 @@ export class Track {
     this.name = data.name ?? "";
     this.duration = data.duration;
     this.ghost = data.ghost ?? false;
+    this.group = data.group ?? "";
     this.t = data.motion.t;
     this.moves = data.moves ?? [];
     this.driven = this.moves.map((_, k) => k).filter((k) => this.moves[k].begin !== undefined);

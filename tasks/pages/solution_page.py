@@ -1,0 +1,174 @@
+"""The page of a changed program: before and after on one clock, what changed, the proof."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import degrees
+from typing import TYPE_CHECKING
+
+from ...core.program.move import Move
+from ...core.program.zone import Radius, Zone, zone_shown
+from ...drawing.page.content import Page, PageCell, PageColumn, PageRow, PageTable
+from ...drawing.page.curves import CHARTS
+from ...problems.improve.solution import Solution
+from ..emulate import EmulateOptions, emulate_with
+from ..setup import setup_of_program
+from .program_tables import causes_table, moves_table, notes_rows, page_shares
+from .run_page import PageDraft, made_by
+from .together import meeting_times
+
+if TYPE_CHECKING:
+    from ...core.cell.cell import Cell
+    from ...problems.improve.zones.changes import ZoneChange
+    from ..results.runs import Run
+
+BEFORE, AFTER = "before", "after"
+_FIGURES = (
+    PageColumn("figure"),
+    PageColumn("unit"),
+    PageColumn(BEFORE, "", 4),
+    PageColumn(AFTER, "", 4),
+    PageColumn("change", "%", 1),
+)
+_CHANGES = (
+    PageColumn("#"),
+    PageColumn("line"),
+    PageColumn("target"),
+    PageColumn("saved", "s", 3, bar=True),
+    PageColumn("zone"),
+    PageColumn("moved", "mm", 1),
+    PageColumn("turned", "°", 2),
+    PageColumn("time before", "s", 3),
+    PageColumn("after", "s", 3),
+    PageColumn("no larger because of"),
+)
+
+
+def solution_page(made: Solution, cell: Cell | None = None) -> Page:
+    """The page of what an optimisation made of a program.
+
+    Args:
+        made: the optimisation's.
+        cell: that it was made in; None for what the program's setup says.
+
+    Raises:
+        FlybyError: one of the programs cannot be driven.
+    """
+    setup = setup_of_program(made.original)
+    cell = cell or setup.surroundings(made.original)
+    runs = [emulate_with(made.original, EmulateOptions())]
+    if made.changed:
+        runs.append(emulate_with(made.program, EmulateOptions()))
+    draft = PageDraft()
+    draft.drive(runs, cell, [BEFORE, AFTER] if made.changed else [""])
+    if made.certificate is not None:
+        draft.prove(len(runs) - 1, made.certificate, runs[-1], cell)
+    last = runs[-1]
+    tables = [
+        *([changes_table(made, runs, draft)] if made.changed else []),
+        _figures(made),
+        *(table for k, run in enumerate(runs) for table in _of_run(run, k, draft, len(runs))),
+        *notes_rows(made.notes, last.report, draft.sources, len(runs) - 1),
+    ]
+    return Page(
+        f"{made.program.name} on {last.robot.name}",
+        _kind(made),
+        _facts(made),
+        page_shares(last.program, last.report),
+        draft.arms,
+        draft.tracks,
+        draft.files(),
+        tables,
+        CHARTS,
+        together=meeting_times(runs),
+        made_by=made_by(),
+    )
+
+
+def _kind(made: Solution) -> str:
+    return "zones" if type(made).__name__ == "ZoneSolution" else "optimize"
+
+
+def _facts(made: Solution) -> dict[str, str]:
+    before, after = made.before.time, made.after.time
+    if not made.changed:
+        return {"cycle time": f"{before:.3f} s", "change": "nothing better was found"}
+    facts = {
+        "cycle time": f"{before:.3f} → {after:.3f} s",
+        "change": f"{100 * (after / before - 1):+.1f} %",
+    }
+    if made.after.clearance is not None:
+        facts["proven clearance"] = f"{1e3 * made.after.clearance:.1f} mm"
+    return facts
+
+
+def _figures(made: Solution) -> PageTable:
+    names = setup_of_program(made.original).robot.axis_names
+    rows = [
+        PageRow((row.what, row.unit, row.before, row.after, row.change))
+        for row in made.table(names)
+    ]
+    return PageTable("Figures", _FIGURES, rows)
+
+
+def _of_run(run: Run, track: int, draft: PageDraft, count: int) -> Iterator[PageTable]:
+    which = "" if count == 1 else f" {(BEFORE, AFTER)[track]}"
+    if track == count - 1:
+        yield causes_table(run.report, track)
+    yield moves_table(run.report, draft.sources, track, f"Moves{which}")
+
+
+def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> PageTable:
+    """A row a move that is otherwise, and the seconds that it saves, those that save most first."""
+    before, after = runs
+    old, new = made.original.moves, made.program.moves
+    alike = len(old) == len(new)
+    moved = {point.move: point for point in made.moved}
+    zones: dict[int, ZoneChange] = {change.move: change for change in getattr(made, "zones", ())}
+    rows: list[tuple[float, PageRow]] = []
+    for index, move in enumerate(new):
+        was = old[index] if alike else None
+        point = moved.get(index)
+        change = zones.get(index)
+        spent = [_spent(before, index) if alike else None, _spent(after, index)]
+        saved = None if spent[0] is None or spent[1] is None else spent[0] - spent[1]
+        same = was is not None and was.zone == move.zone and point is None
+        if same and change is None and (saved is None or abs(saved) < 5e-4):
+            continue
+        source, line = draft.sources.place(1, move.statement)
+        cells: tuple[PageCell, ...] = (
+            float(index + 1),
+            float(line) if line else None,
+            _named(move),
+            saved,
+            _zones(was, move),
+            None if point is None else 1e3 * point.distance,
+            None if point is None else degrees(point.turn) or None,
+            *spent,
+            "" if change is None else change.limit,
+        )
+        report = after.report.moves[index]
+        t = report.begin if report.driven else None
+        rows.append((saved or 0.0, PageRow(cells, "", 1, t, index, source, line)))
+    rows.sort(key=lambda row: -row[0])
+    return PageTable("Changes", _CHANGES, [row for _, row in rows])
+
+
+def _spent(run: Run, index: int) -> float | None:
+    """s of a move, with what joints take to settle."""
+    move = run.report.moves[index]
+    return move.time + move.settling if move.driven else None
+
+
+def _named(move: Move) -> str:
+    return move.target.name or type(move).__name__
+
+
+def _zones(was: Move | None, move: Move) -> str:
+    """The zone of a move, and what it was where it is another."""
+    now = _zone(move.zone)
+    return now if was is None or was.zone == move.zone else f"{_zone(was.zone)} → {now}"
+
+
+def _zone(zone: Zone) -> str:
+    return f"{1e3 * zone.tcp:.5g} mm" if isinstance(zone, Radius) else zone_shown(zone)

@@ -1,0 +1,85 @@
+"""The page of a translated program: the old robot as a ghost beside the new one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ...core.source.reading import Reading
+from ...core.translation.translate import Translation
+from ...drawing.page.content import Page, PageColumn, PageRow, PageSource, PageTable
+from ...drawing.page.curves import CHARTS
+from ..emulate import EmulateOptions, emulate_with
+from ..setup import setup_of_program
+from .program_tables import causes_table, moves_table, page_shares
+from .run_page import PageDraft, cell_of, made_by
+from .together import meeting_times
+
+if TYPE_CHECKING:
+    from ...core.language import Sources
+    from ...core.program.program import Program
+    from ...core.spatial.pose import Pose
+
+_LOSSES = (PageColumn("line"), PageColumn("could not be carried over"))
+
+
+def translation_page(
+    made: Translation, place: Pose | None = None, sources: Sources | None = None
+) -> Page:
+    """The page of a translated program.
+
+    Args:
+        made: the translation.
+        place: the new robot's world in the old one's; None if both are the same.
+        sources: text of the new program by file name; None for none.
+
+    Raises:
+        FlybyError: one of the programs cannot be driven.
+    """
+    before = emulate_with(made.original, EmulateOptions())
+    after = emulate_with(_started(made), EmulateOptions())
+    draft = PageDraft()
+    draft.drive([before], cell_of(before), ["before"], ghosts=1)
+    draft.drive([after], None, ["after"])
+    if place is not None:
+        arm = draft.arms[1]
+        world = replace(arm.nodes[0], place=place.matrix())
+        draft.arms[1] = replace(arm, nodes=[world, *arm.nodes[1:]])
+    old, new = before.duration, after.duration
+    lost = []
+    for note in made.losses:
+        source, line = draft.sources.place(0, note.span)
+        at = float(line) if line else None
+        lost.append(PageRow((at, note.message), "warning", 0, None, note.move, source, line))
+    tables = [
+        *([PageTable("Losses", _LOSSES, lost)] if lost else []),
+        causes_table(after.report, 1),
+        moves_table(before.report, draft.sources, 0, "Moves before"),
+        moves_table(after.report, draft.sources, 1, "Moves after"),
+    ]
+    robots = [setup_of_program(p).robot.name for p in (made.original, made.program)]
+    texts = [PageSource(name, text, 1) for name, text in (sources or {}).items()]
+    return Page(
+        f"{made.original.name}: {robots[0]} → {robots[1]}",
+        "translate",
+        {
+            "cycle time": f"{old:.3f} → {new:.3f} s",
+            "change": f"{100 * (new / old - 1):+.1f} %",
+            "not carried over": str(len(made.losses)),
+        },
+        page_shares(after.program, after.report),
+        draft.arms,
+        draft.tracks,
+        [*(s for s in draft.files() if s.track == 0), *texts],
+        tables,
+        CHARTS,
+        together=meeting_times([before, after]),
+        made_by=made_by(),
+    )
+
+
+def _started(made: Translation) -> Program:
+    """The new program, which begins where the new robot stands at first."""
+    program = made.program
+    known = program.start is not None or isinstance(program.reading, Reading)
+    return program if known else replace(program, start=made.start)
