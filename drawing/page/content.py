@@ -388,6 +388,7 @@ class PageTrack:
         proof: of it.
         ghost: whether it is drawn as a ghost beside the solid one of its group.
         group: tracks of one group are shown together.
+        tool: index of the tool among the arm's where there are no moves.
     """
 
     name: str
@@ -405,6 +406,7 @@ class PageTrack:
     proof: PageProof | None = None
     ghost: bool = False
     group: str = ""
+    tool: int = 0
 
 
 @dataclass(frozen=True)

@@ -99,11 +99,20 @@ def written_anew(setup: Setup, program: Program) -> tuple[Program, Sources]:
     Raises:
         FlybyError: the language cannot say what the program holds.
     """
+    sources = setup.vendor.write(program, setup.robot)
+    return read_again(setup, sources), sources
+
+
+def read_again(setup: Setup, sources: Sources) -> Program:
+    """The program that source files hold, which are nowhere on the disk.
+
+    Raises:
+        FlybyError: it cannot be read.
+    """
     vendor = setup.vendor
-    sources = vendor.write(program, setup.robot)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for file, text in sources.items():
             (folder / file).write_bytes(text.encode())
         first = next(file for file in sources if Path(file).suffix.lower() in vendor.suffixes)
-        return vendor.read_file(folder / first, robot=setup.robot), sources
+        return vendor.read_file(folder / first, robot=setup.robot)

@@ -10,6 +10,7 @@ from ...core.driving.driven_program import DrivenProgram
 from ...core.motion.command.trajectory import Trajectory
 from ...drawing.page.content import (
     Page,
+    PageArm,
     PageChart,
     PageColumn,
     PageRow,
@@ -21,7 +22,7 @@ from ...drawing.page.packing import Quantised
 from ...drawing.page.tracks import page_motion
 from ..results.comparison import COLUMNS, Comparison
 from ..results.runs import Run
-from .program_tables import causes_table, moves_table, page_shares
+from .program_tables import moves_table, page_shares, time_tables
 from .run_page import PageDraft, cell_of, made_by
 
 if TYPE_CHECKING:
@@ -44,10 +45,10 @@ def comparison_page(found: Comparison) -> Page:
     run = Run.of(DrivenProgram.faultless(compared.driven), compared.robot)
     draft = PageDraft()
     draft.drive([run], cell_of(run), ["emulated"])
-    draft.tracks.append(measured_track(compared))
+    draft.tracks.append(measured_track(compared, draft.arms[0]))
     tables = [
         _figures(found),
-        causes_table(run.report, 0),
+        *time_tables(run, draft.sources, 0),
         moves_table(run.report, draft.sources, 0),
         *_notes(found),
     ]
@@ -72,7 +73,7 @@ def comparison_page(found: Comparison) -> Page:
     )
 
 
-def measured_track(compared: Prediction, group: str = "") -> PageTrack:
+def measured_track(compared: Prediction, arm: PageArm, group: str = "") -> PageTrack:
     """What was logged, as a ghost on the clock of the emulation, with how far it is off."""
     found, aligned = compared.residuals, compared.alignment
     rows = slice(None, None, max(1, len(found.t) // _MOST))
@@ -106,6 +107,7 @@ def measured_track(compared: Prediction, group: str = "") -> PageTrack:
         channels=channels,
         ghost=True,
         group=group,
+        tool=[one.name for one in arm.tools].index(compared.driven.program.moves[0].tool.name),
     )
 
 

@@ -9,7 +9,7 @@ from ..emulate import EmulateOptions, emulate_with
 from ..results.fronts import ProgramFront
 from ..results.runs import Run
 from ..setup import setup_of_program
-from .program_tables import causes_table, moves_table
+from .program_tables import moves_table, time_tables
 from .run_page import PageDraft, made_by
 
 GIVEN = "given"
@@ -43,7 +43,7 @@ def front_page(made: ProgramFront) -> Page:
             draft.prove(track, point.certificate, run, setup.surroundings(programs[0]))
     tables = [
         _table(made, tracks),
-        *(causes_table(run.report, k) for k, run in enumerate(runs) if k == len(runs) - 1),
+        *time_tables(runs[-1], draft.sources, len(runs) - 1),
         *(
             moves_table(run.report, draft.sources, k, f"Moves, {name}")
             for k, (run, name) in enumerate(zip(runs, shown, strict=True))

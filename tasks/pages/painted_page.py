@@ -35,7 +35,7 @@ from ...drawing.page.shapes import page_mesh
 from ...drawing.page.tracks import page_motion
 from ..results.painted import COLUMNS, MICRON, TOLERANCE, PaintedPart
 from ..results.runs import Run
-from .program_tables import causes_table, moves_table, notes_rows, page_shares
+from .program_tables import moves_table, notes_rows, page_shares, time_tables
 from .run_page import PageDraft, made_by
 
 if TYPE_CHECKING:
@@ -60,7 +60,8 @@ def painted_page(found: PaintedPart) -> Page:
         if made.certificate is not None and cell is not None:
             draft.prove(0, made.certificate, run, cell)
         report = run.report
-        tables += [causes_table(report, 0), moves_table(report, draft.sources, 0)]
+        tables += time_tables(run, draft.sources, 0)
+        tables.append(moves_table(report, draft.sources, 0))
         tables += notes_rows(found.notes, report, draft.sources, 0)
         shares = page_shares(run.program, report)
     else:
@@ -99,7 +100,7 @@ def _facts(found: PaintedPart) -> dict[str, str]:
 
 def _coats(found: PaintedPart) -> PageTable:
     columns = [PageColumn(title) for title, _ in COLUMNS]
-    return PageTable("Coats", columns, [PageRow(row) for row in found.rows()])
+    return PageTable("By stage", columns, [PageRow(row) for row in found.rows()])
 
 
 def _coat(found: PaintedPart, place: Pose, strokes: FloatArray) -> PageCoat:

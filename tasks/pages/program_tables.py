@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from ...core.errors import Note
+from ...core.errors import FlybyError, Note
 from ...core.program.program import Program
 from ...drawing.page.content import PageCell, PageColumn, PageMove, PageRow, PageShare, PageTable
-from ..results.report import MoveReport, Report, zone_text
+from ..results.report import MoveReport, Report, target_text, zone_text
 from ..results.shares import shares
 from .sources import SourceList
+
+if TYPE_CHECKING:
+    from ..results.runs import Run
 
 MOVES = (
     PageColumn("#"),
@@ -28,9 +32,23 @@ MOVES = (
 _NOTES = (PageColumn("line"), PageColumn("move"), PageColumn("what"))
 _FAULTS = (PageColumn("line"), PageColumn("move"), PageColumn("cause"), PageColumn("what"))
 _CAUSES = (
-    PageColumn("what limits"),
-    PageColumn("time", "s", 3, bar=True),
-    PageColumn("share", "%", 1),
+    PageColumn("what holds the program back"),
+    PageColumn("gives back", "s", 3, bar=True),
+    PageColumn("time", "s", 3),
+    PageColumn("share", "%", 0),
+    PageColumn("moves"),
+    PageColumn("most at line"),
+)
+_LINES = (
+    PageColumn("line"),
+    PageColumn("move"),
+    PageColumn("together", "s", 3, bar=True),
+    PageColumn("times"),
+    PageColumn("share", "%", 0),
+    PageColumn("motion", "s", 3),
+    PageColumn("waits", "s", 3),
+    PageColumn("settling", "s", 3),
+    PageColumn("limited by"),
 )
 
 
@@ -58,7 +76,7 @@ def page_moves(
         source, line = sources.place(track, move.span)
         begin, end = span_of(move)
         tool = tools.index(own.tool.name) if own.tool.name in tools else 0
-        label = f"{move.kind} {move.target or ''}".strip()
+        label = f"{move.kind} {target_text(move)}"
         made.append(PageMove(move.number, label, source, line, tool, 0, begin, end))
     return made
 
@@ -75,12 +93,7 @@ def moves_table(report: Report, sources: SourceList, track: int, title: str = "M
     rows = []
     for move in report.moves:
         source, line = sources.place(track, move.span)
-        target = move.target or (
-            "joint values"
-            if move.position is None
-            else ", ".join(f"{1e3 * value:.1f}" for value in move.position)
-        )
-        head = (float(move.number), move.kind, target, float(line) if line else None)
+        head = (float(move.number), move.kind, target_text(move), float(line) if line else None)
         level = "error" if move.fault is not None else ""
         cells: tuple[PageCell, ...]
         if move.driven:
@@ -104,28 +117,64 @@ def moves_table(report: Report, sources: SourceList, track: int, title: str = "M
     return PageTable(title, MOVES, rows)
 
 
-def causes_table(report: Report, track: int) -> PageTable:
-    """How long each limit holds the robot back, over all moves."""
-    spent: dict[str, float] = {}
-    worst: dict[str, tuple[float, float]] = {}
-    for move in report.moves:
-        for limit in move.limits:
-            seconds = limit.share * move.time
-            spent[limit.name] = spent.get(limit.name, 0.0) + seconds
-            worst[limit.name] = max(worst.get(limit.name, (0.0, 0.0)), (seconds, move.begin))
-    for name, seconds in (("settling", report.settling), ("wait", report.waiting)):
-        if seconds > 0.0:
-            spent[name] = spent.get(name, 0.0) + seconds
-    total = sum(spent.values()) or 1.0
-    rows = [
-        PageRow(
-            (name, seconds, 100.0 * seconds / total),
-            track=track,
-            t=worst[name][1] if name in worst else None,
+def time_tables(run: Run, sources: SourceList, track: int) -> list[PageTable]:
+    """What the time is lost to, and what each line takes.
+
+    Args:
+        run: the run.
+        sources: files of the page.
+        track: of the run.
+    """
+    return [*_causes(run, sources, track), _lines(run, sources, track)]
+
+
+def _causes(run: Run, sources: SourceList, track: int) -> list[PageTable]:
+    """A row a cause; nothing where nobody knows who drives the program."""
+    try:
+        causes = run.causes
+    except FlybyError:
+        return []
+    whole = run.report.driven_time or 1.0
+    rows = []
+    for cause in causes:
+        source, line = sources.place(track, cause.span)
+        first = run.report.moves[cause.moves[0] - 1]
+        cells = (
+            cause.name,
+            cause.gain,
+            cause.time,
+            None if cause.time is None else 100.0 * cause.time / whole,
+            float(len(cause.moves)),
+            float(line) if line else None,
         )
-        for name, seconds in sorted(spent.items(), key=lambda item: -item[1])
-    ]
-    return PageTable("Time by cause", _CAUSES, rows)
+        t = first.begin if first.driven and not line else None
+        rows.append(PageRow(cells, "", track, t, None, source, line))
+    note = "What the program would take less if this alone fell away, the most first."
+    return [PageTable("Causes", _CAUSES, rows, note)]
+
+
+def _lines(run: Run, sources: SourceList, track: int) -> PageTable:
+    """A row a line, what takes longest first."""
+    lines = sorted(run.lines, key=lambda line: -line.total)
+    whole = sum(line.total for line in lines) or 1.0
+    rows = []
+    for one in lines:
+        source, line = sources.place(track, one.span)
+        limit = one.limits[0] if one.limits else None
+        cells = (
+            float(line) if line else None,
+            f"{one.kind} {one.target}",
+            one.total,
+            float(len(one.moves)),
+            100.0 * one.total / whole,
+            one.time,
+            one.wait or None,
+            one.settling or None,
+            "" if limit is None else f"{limit.name} ({100 * limit.share:.0f} %)",
+        )
+        t = run.report.moves[one.moves[0] - 1].begin
+        rows.append(PageRow(cells, "", track, t, None, source, line))
+    return PageTable("Lines", _LINES, rows)
 
 
 def faults_table(report: Report, sources: SourceList, track: int) -> PageTable | None:

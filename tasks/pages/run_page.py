@@ -32,12 +32,12 @@ from ...drawing.page.tracks import (
 from ..setup import Setup, start_of
 from .happenings import page_flags
 from .program_tables import (
-    causes_table,
     faults_table,
     moves_table,
     notes_rows,
     page_moves,
     page_shares,
+    time_tables,
 )
 from .sources import SourceList
 
@@ -197,7 +197,7 @@ def run_page(run: Run, kind: str = "emulate", spans: Sequence[Span | None] = ())
     draft.sources.add(run.program, 0, spans)
     report = run.report
     tables = [
-        causes_table(report, 0),
+        *time_tables(run, draft.sources, 0),
         moves_table(report, draft.sources, 0),
         faults_table(report, draft.sources, 0),
         *notes_rows(report.notes, report, draft.sources, 0),

@@ -13,7 +13,7 @@ from ...drawing.page.curves import CHARTS
 from ...problems.improve.solution import Solution
 from ..emulate import EmulateOptions, emulate_with
 from ..setup import setup_of_program
-from .program_tables import causes_table, moves_table, notes_rows, page_shares
+from .program_tables import moves_table, notes_rows, page_shares, time_tables
 from .run_page import PageDraft, made_by
 from .together import meeting_times
 
@@ -114,7 +114,7 @@ def _figures(made: Solution) -> PageTable:
 def _of_run(run: Run, track: int, draft: PageDraft, count: int) -> Iterator[PageTable]:
     which = "" if count == 1 else f" {(BEFORE, AFTER)[track]}"
     if track == count - 1:
-        yield causes_table(run.report, track)
+        yield from time_tables(run, draft.sources, track)
     yield moves_table(run.report, draft.sources, track, f"Moves{which}")
 
 
@@ -131,7 +131,7 @@ def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> Page
         point = moved.get(index)
         change = zones.get(index)
         spent = [_spent(before, index) if alike else None, _spent(after, index)]
-        saved = None if spent[0] is None or spent[1] is None else spent[0] - spent[1]
+        saved = made.gained.get(index)
         same = was is not None and was.zone == move.zone and point is None
         if same and change is None and (saved is None or abs(saved) < 5e-4):
             continue

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ...core.source.reading import Reading
+from ...core.errors import FlybyError
 from ...core.translation.translate import Translation
-from ...drawing.page.content import Page, PageColumn, PageRow, PageSource, PageTable
+from ...drawing.page.content import Page, PageColumn, PageRow, PageTable
 from ...drawing.page.curves import CHARTS
 from ..emulate import EmulateOptions, emulate_with
+from ..files.texts import read_again
 from ..setup import setup_of_program
-from .program_tables import causes_table, moves_table, page_shares
+from .program_tables import moves_table, page_shares, time_tables
 from .run_page import PageDraft, cell_of, made_by
 from .together import meeting_times
 
@@ -37,7 +38,8 @@ def translation_page(
         FlybyError: one of the programs cannot be driven.
     """
     before = emulate_with(made.original, EmulateOptions())
-    after = emulate_with(_started(made), EmulateOptions())
+    read = _read_back(made, sources)
+    after = emulate_with(read, EmulateOptions())
     draft = PageDraft()
     draft.drive([before], cell_of(before), ["before"], ghosts=1)
     draft.drive([after], None, ["after"])
@@ -53,12 +55,11 @@ def translation_page(
         lost.append(PageRow((at, note.message), "warning", 0, None, note.move, source, line))
     tables = [
         *([PageTable("Losses", _LOSSES, lost)] if lost else []),
-        causes_table(after.report, 1),
+        *time_tables(after, draft.sources, 1),
         moves_table(before.report, draft.sources, 0, "Moves before"),
         moves_table(after.report, draft.sources, 1, "Moves after"),
     ]
     robots = [setup_of_program(p).robot.name for p in (made.original, made.program)]
-    texts = [PageSource(name, text, 1) for name, text in (sources or {}).items()]
     return Page(
         f"{made.original.name}: {robots[0]} → {robots[1]}",
         "translate",
@@ -70,7 +71,7 @@ def translation_page(
         page_shares(after.program, after.report),
         draft.arms,
         draft.tracks,
-        [*(s for s in draft.files() if s.track == 0), *texts],
+        draft.files(),
         tables,
         CHARTS,
         together=meeting_times([before, after]),
@@ -78,8 +79,12 @@ def translation_page(
     )
 
 
-def _started(made: Translation) -> Program:
-    """The new program, which begins where the new robot stands at first."""
-    program = made.program
-    known = program.start is not None or isinstance(program.reading, Reading)
-    return program if known else replace(program, start=made.start)
+def _read_back(made: Translation, sources: Sources | None) -> Program:
+    """The new program as its text says it, so that its moves have lines; else as it was made."""
+    setup = setup_of_program(made.program)
+    if sources is not None:
+        try:
+            return replace(read_again(setup, sources), setup=setup)
+        except FlybyError:
+            pass  # Code around it is missing here that its robot has.
+    return replace(made.program, start=made.program.start or made.start)

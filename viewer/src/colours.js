@@ -45,6 +45,7 @@ export const rgb = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 1
 
 /** What kinds of limits there are, in the order in which a legend has them. */
 export const KINDS = [
+  { key: "asked", name: "programmed acceleration", colour: "#8a63c9", test: /^programmed.*acceleration/ },
   { key: "programmed", name: "programmed speed", colour: "#0072b2", test: /^programmed/ },
   { key: "torque", name: "torque", colour: "#e69f00", test: /torque$/ },
   { key: "centripetal", name: "centripetal", colour: "#009e73", test: /^centripetal/ },

@@ -10,7 +10,7 @@ export function header(session, host, { theme, help }) {
     h("div", { class: "fact" }, h("small", {}, name), h("b", {}, value)),
   );
   const pieces = [
-    h("div", { class: "title" }, h("small", {}, page.kind), h("h1", {}, page.title)),
+    h("div", { class: "title" }, h("small", {}, page.kind), h("h1", { title: page.title }, page.title)),
     h("div", { class: "facts" }, ...facts),
     shareBar(page.shares ?? []),
     choice(session),

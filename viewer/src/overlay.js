@@ -5,6 +5,7 @@ import { css, kindOf, KINDS, REST, viridis } from "./colours.js";
 import { h, number } from "./dom.js";
 import { VIEWS } from "./scene.js";
 
+const TELL_EVERY = 120; // ms between numbers while time runs
 const OPTIONS = { programmed: "programmed path", zones: "zones", flags: "waits, outputs", frames: "frames", labels: "names", robot: "robot", obstacles: "cell", coat: "coat" };
 
 export class Overlay {
@@ -18,7 +19,12 @@ export class Overlay {
     this.tip.hidden = true;
     host.append(this.labels, this.bar(), this.state, this.scale, this.proof, this.tip);
     view.onrender = () => this.draw();
-    session.on("time", () => this.tell());
+    session.on("time", () => {
+      const now = performance.now();
+      if (session.playing && now - (this.told ?? 0) < TELL_EVERY) return;
+      this.told = now;
+      this.tell();
+    });
     session.on("track", () => {
       this.tell();
       this.legend();

@@ -8,6 +8,7 @@ import {
   InstancedMesh,
   Line,
   LineBasicMaterial,
+  LineSegments,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
@@ -20,6 +21,8 @@ import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { kindOf, rgb, viridis } from "./colours.js";
+import { fewer } from "./fewer.js";
+import { before } from "./track.js";
 
 export const COLOURINGS = {
   speed: { name: "TCP speed", chart: "speed", unit: "mm/s" },
@@ -32,6 +35,9 @@ export const COLOURINGS = {
 };
 const PROGRAMMED = { light: 0x8a8f94, dark: 0x7d858c };
 const GHOST = { light: "#2f6fb3", dark: "#7db7f0" };
+const MOST_WIDE = 3000; // points of a path that is drawn wide
+const NEAR = 900; // points of a long one that are
+const MOST_ZONES = 40; // at once: of more those round the present move
 const FLAGS = { wait: 0xd55e00, device: 0xe69f00, statement: 0x0072b2, event: 0x009e73 };
 
 export class PathView {
@@ -39,6 +45,7 @@ export class PathView {
     Object.assign(this, { view, track, arm });
     this.ghost = arm.ghost;
     this.groups = { driven: new Group(), programmed: new Group(), zones: new Group(), stops: new Group(), flags: new Group() };
+    this.balls = [];
     this.driven();
     if (!this.ghost) {
       this.programmed();
@@ -66,26 +73,67 @@ export class PathView {
     }
   }
 
+  /** Short paths are drawn wide; of long ones, where lines lie over each other, that which is near. */
   driven() {
-    const { times, local, nodes } = this.track.path();
+    const { times, nodes } = this.track.path();
     this.lines = [];
+    const wide = times.length <= MOST_WIDE;
     let from = 0;
     for (let k = 1; k <= times.length; k += 1) {
       const gap = k < times.length && times[k] === times[k - 1];
       if (k < times.length && nodes[k] === nodes[from] && !gap) continue;
-      if (k - from > 1) {
-        const material = new LineMaterial({ linewidth: this.ghost ? 1.6 : 3, vertexColors: true, worldUnits: false });
-        material.resolution = new Vector2(this.view.host.clientWidth || 1, this.view.host.clientHeight || 1);
-        if (this.ghost) Object.assign(material, { transparent: true, opacity: 0.65 });
-        const line = new Line2(new LineGeometry(), material);
-        line.geometry.setPositions(local.subarray(3 * from, 3 * k));
-        line.frustumCulled = false;
-        this.lines.push({ line, from, to: k });
-        this.put("driven", nodes[from], line);
-      }
+      if (k - from > 1) this.lines.push(this.line(from, k, wide));
       from = k;
     }
+    this.near = wide || this.ghost || !this.lines.length ? null : this.line(0, Math.min(NEAR, this.lines[0].to), true);
     this.colour();
+  }
+
+  line(from, to, wide) {
+    const { nodes } = this.track.path();
+    let line;
+    if (wide) {
+      const material = new LineMaterial({ linewidth: this.ghost ? 1.6 : 3, vertexColors: true, worldUnits: false });
+      material.resolution = new Vector2(this.view.host.clientWidth || 1, this.view.host.clientHeight || 1);
+      if (this.ghost) Object.assign(material, { transparent: true, opacity: 0.65 });
+      line = new Line2(new LineGeometry(), material);
+    } else line = new Line(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true }));
+    line.frustumCulled = false;
+    this.put("driven", nodes[from], line);
+    return { line, from, to, wide };
+  }
+
+  /** Draw wide what is near to a time. */
+  drawNear(time) {
+    const { times, nodes } = this.track.path();
+    const k = before(times, time);
+    if (this.near.at !== undefined && Math.abs(k - this.near.at) < NEAR / 6) return;
+    this.near.at = k;
+    const own = this.lines.find(({ from, to }) => from <= k && k < to) ?? this.lines[0];
+    const from = Math.max(own.from, Math.min(k - NEAR / 2, own.to - NEAR));
+    const to = Math.min(own.to, from + NEAR);
+    Object.assign(this.near, { from, to });
+    this.carrier(nodes[from]).add(this.near.line);
+    this.fill(this.near);
+  }
+
+  /** Points and colours of a line. */
+  fill(one) {
+    const { local } = this.track.path();
+    const kept = fewer(local, this.shades, one.from, one.to);
+    const xyz = kept.flatMap((k) => [local[3 * k], local[3 * k + 1], local[3 * k + 2]]);
+    const colours = kept.flatMap((k) => this.shades[k]);
+    if (one.wide) {
+      one.line.geometry.dispose();
+      one.line.geometry = new LineGeometry();
+      one.line.geometry.setPositions(xyz);
+      one.line.geometry.setColors(colours);
+      return;
+    }
+    one.line.geometry.dispose();
+    one.line.geometry = new BufferGeometry();
+    one.line.geometry.setAttribute("position", new BufferAttribute(new Float32Array(xyz), 3));
+    one.line.geometry.setAttribute("color", new BufferAttribute(new Float32Array(colours.map((c) => c ** 2.2)), 3));
   }
 
   /** Colour of each point of the path, and what the colours stand for. */
@@ -126,20 +174,25 @@ export class PathView {
   colour() {
     const { colours, ...scale } = this.colours();
     this.scale = scale;
-    for (const { line, from, to } of this.lines) {
-      line.geometry.setColors(colours.slice(from, to).flat());
-    }
+    this.shades = colours;
+    for (const line of this.lines) this.fill(line);
+    if (this.near) this.fill(this.near);
   }
 
   programmed() {
     const material = new LineBasicMaterial({ color: PROGRAMMED[this.view.theme] });
-    for (const { node, points } of this.track.data.programmed ?? []) {
-      const count = points[0].length;
-      const xyz = new Float32Array(3 * count);
-      for (let k = 0; k < count; k += 1) for (let i = 0; i < 3; i += 1) xyz[3 * k + i] = points[i][k];
+    const byNode = new Map();
+    for (const { node = 0, points } of this.track.data.programmed ?? []) {
+      if (!byNode.has(node)) byNode.set(node, []);
+      const ends = byNode.get(node);
+      for (let k = 1; k < points[0].length; k += 1) {
+        for (const at of [k - 1, k]) ends.push(points[0][at], points[1][at], points[2][at]);
+      }
+    }
+    for (const [node, ends] of byNode) {
       const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new BufferAttribute(xyz, 3));
-      this.put("programmed", node ?? 0, new Line(geometry, material));
+      geometry.setAttribute("position", new BufferAttribute(new Float32Array(ends), 3));
+      this.put("programmed", node, new LineSegments(geometry, material));
     }
   }
 
@@ -151,19 +204,41 @@ export class PathView {
     for (const [node, rows] of byNode) {
       const passed = rows.filter((k) => waypoints.radius[k] > 0);
       const material = new MeshBasicMaterial({ color: 0xe69f00, transparent: true, opacity: 0.2, depthWrite: false });
-      const balls = new InstancedMesh(new SphereGeometry(1, 20, 14), material, passed.length);
+      const balls = new InstancedMesh(new SphereGeometry(1, 20, 14), material, Math.min(passed.length, MOST_ZONES));
       balls.renderOrder = 4;
-      passed.forEach((k, i) => {
-        const r = waypoints.radius[k];
-        const m = new Matrix4().makeScale(r, r, r);
-        m.setPosition(...waypoints.points.map((column) => column[k]));
-        balls.setMatrixAt(i, m);
-      });
       balls.frustumCulled = false;
+      this.balls.push({ balls, passed });
+      this.fillZones(balls, passed);
       this.put("zones", node, balls);
       const stops = rows.filter((k) => waypoints.radius[k] === 0);
       this.put("stops", node, this.dots(waypoints.points, stops, this.view.theme === "dark" ? 0xf2f2f2 : 0x22272b, 6));
       this.put("stops", node, this.dots(waypoints.points, passed, 0xb87400, 4));
+    }
+  }
+
+  fillZones(balls, rows) {
+    const waypoints = this.track.data.waypoints;
+    rows.forEach((k, i) => {
+      const r = waypoints.radius[k];
+      const m = new Matrix4().makeScale(r, r, r);
+      m.setPosition(...waypoints.points.map((column) => column[k]));
+      balls.setMatrixAt(i, m);
+    });
+    balls.count = rows.length;
+    balls.instanceMatrix.needsUpdate = true;
+  }
+
+  /** Of many zones those round a move. */
+  nearZones(move) {
+    if (move === this.zonesOf) return;
+    this.zonesOf = move;
+    const { moves } = this.track.data.waypoints;
+    for (const { balls, passed } of this.balls) {
+      if (passed.length <= MOST_ZONES) continue;
+      const at = passed.findIndex((k) => moves[k] >= move);
+      const middle = at < 0 ? passed.length : at;
+      const first = Math.min(Math.max(middle - MOST_ZONES / 2, 0), passed.length - MOST_ZONES);
+      this.fillZones(balls, passed.slice(first, first + MOST_ZONES));
     }
   }
 
@@ -201,6 +276,8 @@ export class PathView {
 
   pose(time) {
     const at = this.track.tcp(time);
+    if (this.near) this.drawNear(time);
+    if (this.balls.length) this.nearZones(this.track.moveAt(time));
     this.tip.position.set(...at);
     const away = this.view.camera.position.distanceTo(this.tip.position);
     this.tip.scale.setScalar(0.006 * away);
@@ -219,7 +296,9 @@ export class PathView {
   }
 
   resize(width, height) {
-    for (const { line } of this.lines) line.material.resolution.set(width, height);
+    for (const { line, wide } of [...this.lines, ...(this.near ? [this.near] : [])]) {
+      if (wide) line.material.resolution.set(width, height);
+    }
   }
 
   /** The time at which the path passes nearest to a place on the screen; null if none is near. */

@@ -7,6 +7,7 @@ import { h, number } from "./dom.js";
 const LEFT = 54;
 const RIGHT = 14;
 const GAP = 1e-9;
+const READ_EVERY = 120; // ms between read-outs while time runs
 
 export class PlotPane {
   constructor(session, host) {
@@ -18,7 +19,8 @@ export class PlotPane {
     this.bandHost = h("div", { class: "band" });
     this.band = h("canvas", { "aria-label": "what limits the robot over time" });
     this.legend = h("div", { class: "legend" });
-    this.bandHost.append(this.band);
+    this.head = h("i", { class: "playhead" });
+    this.bandHost.append(this.band, this.head);
     this.plots = [];
     host.append(h("div", { class: "bandrow" }, this.legend, this.bandHost));
     if (this.charts.length) {
@@ -73,10 +75,11 @@ export class PlotPane {
       const channels = track.channels.filter((channel) => channel.chart === chart.key);
       channels.forEach((channel, k) => {
         const joint = channel.axis ?? null;
-        if (!own && (channel.stepped || channel.axis === undefined === false)) return;
+        if (!own && (channel.stepped || joint !== null)) return;
         found.push({ track, channel, own, name: own ? channel.name : `${channel.name}, ${track.name}`, colour: colourOf(channel, joint, k, own) });
       });
     }
+    for (const curve of found) curve.dashed = !curve.own && found.some((one) => one.own);
     return found;
   }
 
@@ -91,11 +94,11 @@ export class PlotPane {
     const tables = curves.map(({ track, channel }) => [this.clockTimes(track), Array.from(channel.values, (v) => (Number.isFinite(v) ? v : null))]);
     const data = uPlot.join(tables.map(([x, y]) => [x, y]), tables.map(() => [2]));
     const limit = chart.span;
-    const series = curves.map(({ channel, colour, own, name }) => ({
+    const series = curves.map(({ channel, colour, own, dashed, name }) => ({
       label: name,
       stroke: colour,
       width: own ? 1.4 : 1,
-      dash: channel.stepped ? [5, 3] : own ? undefined : [2, 3],
+      dash: channel.stepped ? [5, 3] : dashed ? [2, 3] : undefined,
       points: { show: false },
       spanGaps: true,
       paths: channel.stepped ? uPlot.paths.stepped({ align: 1 }) : undefined,
@@ -120,12 +123,15 @@ export class PlotPane {
       },
     };
     slot.made = new uPlot(options, data, slot.plot);
+    slot.head = h("i", { class: "playhead" });
+    slot.made.over.append(slot.head);
     slot.made.over.addEventListener("click", () => {
       const { left } = slot.made.cursor;
       if (left >= 0 && !slot.dragged) this.session.seek(slot.made.posToVal(left, "x"));
       slot.dragged = false;
     });
     slot.made.over.addEventListener("dblclick", () => this.session.zoom(null));
+    this.putHead(slot);
     this.read(slot, slot.made);
   }
 
@@ -166,14 +172,6 @@ export class PlotPane {
         ctx.stroke();
       }
     }
-    const x = u.valToPos(this.session.t, "x", true);
-    ctx.setLineDash([]);
-    ctx.strokeStyle = this.colours.text;
-    ctx.lineWidth = 1.5 * devicePixelRatio;
-    ctx.beginPath();
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
     ctx.restore();
   }
 
@@ -204,18 +202,36 @@ export class PlotPane {
     slot.read.replaceChildren(...parts);
   }
 
+  /** The playheads follow at once, numbers some times a second: curves stay as they are drawn. */
   cursor() {
+    const now = performance.now();
+    const told = !this.session.playing || now - (this.told ?? 0) > READ_EVERY;
+    if (told) this.told = now;
     for (const slot of this.slots) {
-      slot.made?.redraw(false, false);
-      if (slot.made && !slot.made.over.matches(":hover")) this.read(slot, slot.made);
+      if (!slot.made) continue;
+      this.putHead(slot);
+      if (told && !slot.made.over.matches(":hover")) this.read(slot, slot.made);
     }
-    this.drawBand();
+    this.putBandHead();
+  }
+
+  putHead(slot) {
+    const x = slot.made.valToPos(this.session.t, "x");
+    slot.head.hidden = !(x >= 0 && x <= slot.made.over.clientWidth);
+    slot.head.style.transform = `translateX(${x}px)`;
+  }
+
+  putBandHead() {
+    const x = this.placeOf(this.session.timeOf(this.session.track));
+    this.head.hidden = !(x >= LEFT - 1 && x <= this.bandHost.clientWidth - RIGHT + 1);
+    this.head.style.transform = `translateX(${x}px)`;
   }
 
   range() {
     for (const slot of this.slots) slot.made?.redraw(false, true);
     for (const slot of this.slots) slot.made?.setScale("x", { min: this.span()[0], max: this.span()[1] });
     this.drawBand();
+    if (this.session.track) this.cursor();
   }
 
   span() {
@@ -224,9 +240,10 @@ export class PlotPane {
 
   resize() {
     for (const slot of this.slots) {
-      slot.made?.setSize({ width: Math.max(slot.plot.clientWidth, 50), height: Math.max(slot.plot.clientHeight, 40) });
+      if (slot.made) slot.made.setSize({ width: Math.max(slot.plot.clientWidth, 50), height: Math.max(slot.plot.clientHeight, 40) });
     }
     this.drawBand();
+    if (this.session.track) this.cursor();
   }
 
   // The band
@@ -278,10 +295,8 @@ export class PlotPane {
     }
     used.set(REST.key, Math.max(track.duration - moving, 0));
     this.moveTicks(ctx, track, top, bottom);
-    ctx.fillStyle = this.colours.text;
-    const x = this.placeOf(this.session.timeOf(track));
-    ctx.fillRect(x - 1, 0, 2, height);
     ctx.restore();
+    this.putBandHead();
     this.fillLegend(used, track);
   }
 

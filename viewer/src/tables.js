@@ -3,6 +3,7 @@
 import { h } from "./dom.js";
 
 const MOST_ROWS = 3000;
+const UNBROKEN = 26; // characters of a cell that stays in one line; longer ones are prose
 
 export class TablePane {
   constructor(session, host, drawings = []) {
@@ -112,7 +113,8 @@ export class TablePane {
         }
         return td;
       }
-      return h("td", { class: numeric[k] ? "right" : "" }, cell ?? "");
+      const kind = numeric[k] ? "right" : String(cell ?? "").length <= UNBROKEN ? "short" : "";
+      return h("td", { class: kind }, cell ?? "");
     });
     const element = h("tr", { class: row.level ?? "", tabindex: "0" }, ...cells);
     element.data = row;

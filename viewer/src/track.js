@@ -2,8 +2,8 @@
 
 import { Frames, applied, columnMajor, inverted, multiplied } from "./kinematics.js";
 
-const MOST_POINTS = 9000;
-const STEP = 0.012; // s from one point of the drawn path to the next, where there is room
+const MOST_POINTS = 5000;
+const STEP = 0.016; // s from one point of the drawn path to the next, where there is room
 
 /** Index of the last entry that is not above a value; 0 at the least. */
 export function before(values, value) {
@@ -92,7 +92,7 @@ export class Track {
 
   toolAt(time) {
     const move = this.moves[this.moveAt(time)];
-    return this.tools[move?.tool ?? 0] ?? this.tools[0];
+    return this.tools[move ? move.tool ?? 0 : this.data.tool ?? 0] ?? this.tools[0];
   }
 
   tcp(time, poses = this.poses(time)) {
@@ -147,7 +147,7 @@ export class Track {
     for (let k = 0; k + 1 < this.t.length; k += 1) {
       const span = this.t[k + 1] - this.t[k];
       const pieces = Math.max(1, Math.ceil(span / step - 1e-9));
-      if (times.length && span < 0.25 * step && this.t[k] - times.at(-1) < 0.5 * step && span > 0) continue;
+      if (times.length && span > 0 && this.t[k] - times.at(-1) < 0.6 * step && this.t[k] > times.at(-1)) continue;
       for (let i = 0; i < pieces; i += 1) times.push(this.t[k] + (span * i) / pieces);
     }
     times.push(this.t.at(-1));
