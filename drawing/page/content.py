@@ -214,6 +214,7 @@ class PageMove:
         tool: index of the tool among the arm's.
         node: that carries its work object: the path is drawn there.
         begin, end: s, when it is driven, waits at its end included; both None where it is not.
+        fault: whether it cannot be driven.
     """
 
     number: int
@@ -224,6 +225,7 @@ class PageMove:
     node: int = 0
     begin: float | None = None
     end: float | None = None
+    fault: bool = False
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,9 @@ def page_moves(
         begin, end = span_of(move)
         tool = tools.index(own.tool.name) if own.tool.name in tools else 0
         label = f"{move.kind} {target_text(move)}"
-        made.append(PageMove(move.number, label, source, line, tool, 0, begin, end))
+        made.append(
+            PageMove(move.number, label, source, line, tool, 0, begin, end, move.fault is not None)
+        )
     return made
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
+from ...core.display import counted
 from ...core.errors import FlybyError, Span
 from ...core.program.tool import Tool, WorkObject
 from ...drawing.page.arms import Nodes, page_arm
@@ -212,9 +213,21 @@ def run_page(run: Run, kind: str = "emulate", spans: Sequence[Span | None] = ())
         draft.files(),
         [table for table in tables if table is not None],
         CHARTS,
-        notes=[str(fault) for fault in run.faults[:3]],
+        notes=fault_notes(run),
         made_by=made_by(),
     )
+
+
+def fault_notes(run: Run) -> list[str]:
+    """A sentence where moves cannot be driven."""
+    if not run.faults:
+        return []
+    first = run.faults[0]
+    line = "" if first.span is None else f", line {first.span.line}"
+    return [
+        f"{counted(run.faults, 'move')} cannot be driven, the first is move {first.move + 1}{line} "
+        f"({first.cause}): no time is claimed across them, see Faults"
+    ]
 
 
 def facts_of(run: Run) -> dict[str, str]:

@@ -13,7 +13,7 @@ from ..emulate import EmulateOptions, emulate_with
 from ..files.texts import read_again
 from ..setup import setup_of_program
 from .program_tables import moves_table, page_shares, time_tables
-from .run_page import PageDraft, cell_of, made_by
+from .run_page import PageDraft, cell_of, fault_notes, made_by
 from .together import meeting_times
 
 if TYPE_CHECKING:
@@ -75,6 +75,7 @@ def translation_page(
         tables,
         CHARTS,
         together=meeting_times([before, after]),
+        notes=fault_notes(after),
         made_by=made_by(),
     )
 

@@ -35,15 +35,19 @@ export const COLOURINGS = {
 };
 const PROGRAMMED = { light: 0x8a8f94, dark: 0x7d858c };
 const GHOST = { light: "#2f6fb3", dark: "#7db7f0" };
-const MOST_WIDE = 3000; // points of a path that is drawn wide
-const NEAR = 900; // points of a long one that are
-const MOST_ZONES = 40; // at once: of more those round the present move
+// Points of a path that is drawn wide, of a longer one that are; zones at once, of more those round
+// the present move: with a graphics card, and without one.
+const AMOUNTS = [
+  { wide: 3000, near: 900, zones: 40 },
+  { wide: 400, near: 240, zones: 12 },
+];
 const FLAGS = { wait: 0xd55e00, device: 0xe69f00, statement: 0x0072b2, event: 0x009e73 };
 
 export class PathView {
   constructor(view, track, arm) {
     Object.assign(this, { view, track, arm });
     this.ghost = arm.ghost;
+    this.amounts = AMOUNTS[view.plain ? 1 : 0];
     this.groups = { driven: new Group(), programmed: new Group(), zones: new Group(), stops: new Group(), flags: new Group() };
     this.balls = [];
     this.driven();
@@ -77,7 +81,7 @@ export class PathView {
   driven() {
     const { times, nodes } = this.track.path();
     this.lines = [];
-    const wide = times.length <= MOST_WIDE;
+    const wide = times.length <= this.amounts.wide;
     let from = 0;
     for (let k = 1; k <= times.length; k += 1) {
       const gap = k < times.length && times[k] === times[k - 1];
@@ -85,7 +89,7 @@ export class PathView {
       if (k - from > 1) this.lines.push(this.line(from, k, wide));
       from = k;
     }
-    this.near = wide || this.ghost || !this.lines.length ? null : this.line(0, Math.min(NEAR, this.lines[0].to), true);
+    this.near = wide || this.ghost || !this.lines.length ? null : this.line(0, Math.min(this.amounts.near, this.lines[0].to), true);
     this.colour();
   }
 
@@ -107,11 +111,11 @@ export class PathView {
   drawNear(time) {
     const { times, nodes } = this.track.path();
     const k = before(times, time);
-    if (this.near.at !== undefined && Math.abs(k - this.near.at) < NEAR / 6) return;
+    if (this.near.at !== undefined && Math.abs(k - this.near.at) < this.amounts.near / 6) return;
     this.near.at = k;
     const own = this.lines.find(({ from, to }) => from <= k && k < to) ?? this.lines[0];
-    const from = Math.max(own.from, Math.min(k - NEAR / 2, own.to - NEAR));
-    const to = Math.min(own.to, from + NEAR);
+    const from = Math.max(own.from, Math.min(k - this.amounts.near / 2, own.to - this.amounts.near));
+    const to = Math.min(own.to, from + this.amounts.near);
     Object.assign(this.near, { from, to });
     this.carrier(nodes[from]).add(this.near.line);
     this.fill(this.near);
@@ -204,7 +208,7 @@ export class PathView {
     for (const [node, rows] of byNode) {
       const passed = rows.filter((k) => waypoints.radius[k] > 0);
       const material = new MeshBasicMaterial({ color: 0xe69f00, transparent: true, opacity: 0.2, depthWrite: false });
-      const balls = new InstancedMesh(new SphereGeometry(1, 20, 14), material, Math.min(passed.length, MOST_ZONES));
+      const balls = new InstancedMesh(new SphereGeometry(1, 20, 14), material, Math.min(passed.length, this.amounts.zones));
       balls.renderOrder = 4;
       balls.frustumCulled = false;
       this.balls.push({ balls, passed });
@@ -234,11 +238,11 @@ export class PathView {
     this.zonesOf = move;
     const { moves } = this.track.data.waypoints;
     for (const { balls, passed } of this.balls) {
-      if (passed.length <= MOST_ZONES) continue;
+      if (passed.length <= this.amounts.zones) continue;
       const at = passed.findIndex((k) => moves[k] >= move);
       const middle = at < 0 ? passed.length : at;
-      const first = Math.min(Math.max(middle - MOST_ZONES / 2, 0), passed.length - MOST_ZONES);
-      this.fillZones(balls, passed.slice(first, first + MOST_ZONES));
+      const first = Math.min(Math.max(middle - this.amounts.zones / 2, 0), passed.length - this.amounts.zones);
+      this.fillZones(balls, passed.slice(first, first + this.amounts.zones));
     }
   }
 

@@ -305,9 +305,12 @@ export class PlotPane {
     ctx.font = "10px system-ui, sans-serif";
     ctx.textBaseline = "top";
     let free = -100;
+    let ticked = -100;
     for (const move of track.moves) {
       if (move.begin === undefined) continue;
       const x = this.placeOf(move.begin);
+      if (x - ticked < 4) continue;
+      ticked = x;
       ctx.fillRect(x, top - 2, 1, bottom - top + 4);
       const text = move.line ? String(move.line) : String(move.number);
       const end = this.placeOf(move.end);

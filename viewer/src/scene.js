@@ -99,6 +99,7 @@ export class SceneView {
     this.trace = null;
     this.drawn = 0;
     const plain = drawnInSoftware();
+    this.plain = plain;
     this.renderer = new WebGLRenderer({ antialias: !plain, powerPreference: "high-performance" });
     this.renderer.setPixelRatio(plain ? 1 : Math.min(window.devicePixelRatio, 2));
     host.append(this.renderer.domElement);

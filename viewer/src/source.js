@@ -69,24 +69,29 @@ export class SourcePane {
     for (const move of this.session.track?.moves ?? []) {
       if ((move.source ?? -1) !== index || !move.line) continue;
       const one = found.get(move.line) ?? { time: 0, passes: 0, fault: false };
-      one.passes += 1;
-      if (move.end !== undefined) one.time += move.end - move.begin;
+      one.fault ||= move.fault ?? false;
+      if (move.end !== undefined) {
+        one.passes += 1;
+        one.time += move.end - move.begin;
+      }
       found.set(move.line, one);
     }
     return found;
   }
 
   line(text, number, spent, most) {
-    const row = h("div", { class: spent ? "line drives" : "line", "data-line": number });
+    const kind = spent ? (spent.fault ? " drives fault" : " drives") : "";
+    const row = h("div", { class: `line${kind}`, "data-line": number });
     const heat = h("span", { class: "heat" });
-    if (spent && most > 0) {
+    if (spent?.fault) row.title = "cannot be driven: see Faults";
+    else if (spent?.passes && most > 0) {
       const bar = h("i");
       bar.style.width = `${Math.max(4, (100 * spent.time) / most)}%`;
       heat.append(bar);
       const times = spent.passes > 1 ? `, driven ${spent.passes} times` : "";
       row.title = `${seconds(spent.time)}${times}`;
     }
-    const cost = spent ? `${spent.passes > 1 ? `${spent.passes} × ` : ""}${(spent.time / spent.passes).toFixed(2)}` : "";
+    const cost = spent?.fault ? "fault" : spent?.passes ? `${spent.passes > 1 ? `${spent.passes} × ` : ""}${(spent.time / spent.passes).toFixed(2)}` : "";
     row.append(
       h("span", { class: "gutter" }, h("span", { class: "number" }, String(number)), h("span", { class: "cost" }, cost), heat),
       h("span", { class: "words" }, text || " "),
