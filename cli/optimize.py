@@ -10,17 +10,26 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.errors import OptionError
-from ..tasks.files.outputs import check_outputs, picture_kind, write_all
+from ..tasks.files.outputs import check_outputs, picture_kind
 from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json, short_place
 from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
 from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
-from ..tasks.setup import Setup, setup_of_program, start_of, writable_robot
+from ..tasks.setup import setup_of_program, writable_robot
 from .output.console import print_json, print_table, progress
 from .output.delivery import OtherVendor, deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution
-from .parameters import AsJson, Force, InPlace, Out, PageFile, ProgramFile, with_options
+from .parameters import (
+    AsJson,
+    CellPlot,
+    Force,
+    InPlace,
+    Out,
+    PageFile,
+    ProgramFile,
+    with_options,
+)
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
@@ -55,9 +64,7 @@ def optimize(
     ] = None,
     out: Out = None,
     in_place: InPlace = False,
-    plot: Annotated[
-        Path | None, typer.Option(help="Draw the cell with both paths: PNG, PDF or SVG.")
-    ] = None,
+    plot: CellPlot = None,
     report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
@@ -82,14 +89,13 @@ def optimize(
             beside = OtherVendor(setup, writable_robot(other, "--also"), out, places)
             beside.check(read)
         made = optimize_with(read, replace(options, report=say))
-        delivery = deliver(made, setup.vendor, places, unproven=False)
+        delivery = deliver(made, setup, places, unproven=False)
         if beside is not None:
             delivery = beside.written(delivery)
         delivery = delivery.with_page(report, say, cell)
         if plot is not None:
             say("drawing")
-            drawn = _draw(plot, cell, setup, made)
-            delivery = replace(delivery, written=[*delivery.written, *drawn])
+            delivery = delivery.with_picture(plot, cell)
     if json:
         print_json(_json(delivery.made, cell, delivery.written))
     else:
@@ -107,18 +113,6 @@ def _check_places(out: Path | None, in_place: bool, vias: str, other: str | None
         raise OptionError(
             f"--also {other}: its code goes beside the program's own: name a folder by --out"
         )
-
-
-def _draw(plot: Path, cell: Cell, setup: Setup, made: Solution) -> list[Path]:
-    from ..core.motion.emulator.controller import Controller
-    from ..drawing.cell import draw_cell
-
-    controller, start = Controller(setup.vendor, setup.robot), start_of(made.original)
-    runs = [("before", controller.run(made.original, start))]
-    if made.changed:
-        runs.append(("after", controller.run(made.program, start)))
-    write_all("--plot", {plot: draw_cell(cell, runs, picture_kind(plot, "--plot"))})
-    return [plot]
 
 
 def _tell(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) -> None:

@@ -109,3 +109,7 @@ PageFile = Annotated[
     ),
 ]
 Plot = Annotated[Path | None, typer.Option("--plot", help="Draw it: PNG, PDF or SVG.")]
+CellPlot = Annotated[
+    Path | None,
+    typer.Option("--plot", help="Draw the cell with the path before and after: PNG, PDF or SVG."),
+]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.program.zone import zone_shown
+from ..tasks.files.outputs import check_outputs, picture_kind
 from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json, short_place
 from ..tasks.pages.file import check_page
@@ -19,7 +20,16 @@ from ..tasks.zones import ZoneOptions, zones_with
 from .output.console import print_json, print_table, progress
 from .output.delivery import deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution
-from .parameters import AsJson, Force, InPlace, Out, PageFile, ProgramFile, with_options
+from .parameters import (
+    AsJson,
+    CellPlot,
+    Force,
+    InPlace,
+    Out,
+    PageFile,
+    ProgramFile,
+    with_options,
+)
 
 if TYPE_CHECKING:
     from ..core.cell.cell import Cell
@@ -47,6 +57,7 @@ def zones(
         bool,
         typer.Option("--unproven", help="Write the program even if its clearance is not proven."),
     ] = False,
+    plot: CellPlot = None,
     report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
@@ -58,12 +69,19 @@ def zones(
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     places.check()
     check_page(report, places.inputs, force)
+    if plot is not None:
+        picture_kind(plot, "--plot")
+    check_outputs({"--plot": plot}, places.inputs, force)
     with progress("reading the program") as say:
         read = read_with(program, source)
         setup = setup_of_program(read)
         cell = setup.surroundings(read, no_floor=options.no_floor)
         made = zones_with(read, replace(options, report=say))
-        delivery = deliver(made, setup.vendor, places, unproven).with_page(report, say, cell)
+        delivery = deliver(made, setup, places, unproven)
+        delivery = delivery.with_page(report, say, cell)
+        if plot is not None:
+            say("drawing")
+            delivery = delivery.with_picture(plot, cell)
     if json:
         print_json(_json(made, cell, delivery.written))
     else:

@@ -12,7 +12,7 @@ import typer
 from ...core.door import called
 from ...core.errors import FlybyError, Note
 from ...tasks.files.not_executed import not_executed_notes, refuse_not_executed
-from ...tasks.files.outputs import check_outputs, write_in
+from ...tasks.files.outputs import check_outputs, picture_kind, write_all, write_in
 from ...tasks.files.places import FilePlaces
 from ...tasks.pages.file import write_page
 from ...tasks.setup import Setup
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from ...core.cell.cell import Cell
     from ...core.language import Sources
     from ...core.program.program import Program
-    from ...core.vendor import Vendor
     from ...problems.improve.solution import Solution
 
 
@@ -33,13 +32,13 @@ class Delivery:
 
     Args:
         made: the solution.
-        vendor: whose language it is.
+        setup: its robot, and whose language it is.
         places: where the files were to go.
         written: the files.
     """
 
     made: Solution
-    vendor: Vendor
+    setup: Setup
     places: FilePlaces
     written: Sequence[Path]
 
@@ -49,6 +48,14 @@ class Delivery:
             return self
         say("making the page")
         return replace(self, written=[*self.written, *write_page(file, self.made, cell=cell)])
+
+    def with_picture(self, plot: Path, cell: Cell) -> Delivery:
+        """The delivery with a picture of the cell with the path before and after."""
+        from ...tasks.results.changed_picture import draw_change
+
+        drawn = draw_change(self.made, cell, self.setup, picture_kind(plot, "--plot"))
+        write_all("--plot", {plot: drawn})
+        return replace(self, written=[*self.written, plot])
 
     def end(self, told: bool) -> None:
         """Say that nothing was written, if nothing was to be, and give the exit status.
@@ -64,28 +71,28 @@ class Delivery:
         if told and made.changed and not self.places.anywhere:
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
         if self.places.in_place:
-            refuse_not_executed(not_executed_notes(made.original, made.program, self.vendor))
+            refuse_not_executed(not_executed_notes(made.original, made.program, self.setup.vendor))
         if not made.proven:
             raise typer.Exit(1)
 
 
-def deliver(made: Solution, vendor: Vendor, places: FilePlaces, unproven: bool) -> Delivery:
+def deliver(made: Solution, setup: Setup, places: FilePlaces, unproven: bool) -> Delivery:
     """Write the files of a changed program that is proven.
 
     Args:
         made: with the texts of its program.
-        vendor: whose language it is.
+        setup: its robot, and whose language it is.
         places: where they go.
         unproven: whether a program that is not proven is written as well.
 
     Raises:
         InputError: see `FilePlaces.write`.
     """
-    noted = not_executed_notes(made.original, made.program, vendor) if places.in_place else ()
+    noted = not_executed_notes(made.original, made.program, setup.vendor) if places.in_place else ()
     written: list[Path] = []
     if made.changed and (made.proven or unproven) and not noted:
         written = places.write(made.texts, made.original)
-    return Delivery(made, vendor, places, written)
+    return Delivery(made, setup, places, written)
 
 
 @dataclass(frozen=True)

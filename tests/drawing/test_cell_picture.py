@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import matplotlib
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flyby.core.cell.geometry import Geometry
 from flyby.core.program.zone import Radius
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
-from flyby.drawing.cell import draw_cell, make_cell_figure
+from flyby.core.spatial.pose import Pose
+from flyby.drawing.cell import VEIL, draw_cell, make_cell_figure
 from flyby.drawing.solids import obstacle_triangles, robot_triangles, skeleton, triangles
 from flyby.validation.scenes.clutter_layout import thing
 from flyby.validation.scenes.scene import Scene, with_zone
@@ -111,3 +115,23 @@ def test_the_picture_is_a_file_of_its_kind(kind: str, begin: bytes) -> None:
     scene = two_joints()
     assert draw_cell(scene.cell, runs_of(scene)[:1], kind).startswith(begin)
     assert matplotlib.rcParams["font.size"] == matplotlib.rcParamsDefault["font.size"]
+
+
+def test_obstacles_are_named_and_a_fence_in_front_is_a_veil() -> None:
+    scene = two_joints()
+    fence = replace(
+        scene.cell.obstacles[0],
+        name="front fence",
+        geometry=Geometry(Box((6.0, 0.02, 4.0)), Pose((0.8, -0.8, 1.0))),
+    )
+    cell = replace(scene.cell, obstacles=(*scene.cell.obstacles, fence))
+    figure = make_cell_figure(cell, runs_of(scene))
+    space, *planes = figure.axes
+    assert {text.get_text() for text in space.texts} == {"box", "front fence"}
+    alphas = {round(float(a), 3) for c in space.collections for a in c.get_facecolor()[:, 3]}
+    assert alphas == {1.0, 0.3, round(VEIL, 3)}
+    # In the plane it is seen through, and what lies behind it has the name.
+    assert all("front fence" not in {t.get_text() for t in plane.texts} for plane in planes)
+    assert any("box" in {t.get_text() for t in plane.texts} for plane in planes)
+    circles = [c for plane in planes for c in plane.collections if len(c.get_edgecolor())]
+    assert circles, "zones are drawn"

@@ -11,6 +11,7 @@ beside the true one, never tighter than that where it stands.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -94,6 +95,9 @@ class EvaluatedProgram:
         return Derivatives(self.program, self.timing)
 
 
+Watch = Callable[[EvaluatedProgram], object]
+
+
 @dataclass(frozen=True, eq=False)
 class _Plane:
     """The time near a point: duration + slope · (x − at)."""
@@ -112,6 +116,7 @@ class PacedProblem:
         pacing: the speeds.
         goal: what is to be small.
         consumption: whose integral is the energy.
+        watch: called with every point that can be driven.
 
     Attributes:
         lower, upper, scale: (n,), see `nonsmooth_sqp.SearchModel`.
@@ -124,12 +129,14 @@ class PacedProblem:
         pacing: Pacing,
         goal: Goal,
         consumption: Consumption,
+        watch: Watch | None = None,
     ) -> None:
         self.controller = controller
         self._geometry = geometry
         self._pacing = pacing
         self._goal = goal
         self._consumption = consumption
+        self._watch = watch
         self._planes: list[_Plane] = []
         bounds = [(pacing.lower, pacing.upper, pacing.scale)]
         self._split = 0
@@ -160,7 +167,10 @@ class PacedProblem:
             return None
         energy = self.controller.energy(program, timing, self._consumption).value
         objective = self._goal.time * timing.duration + self._goal.energy * energy
-        return EvaluatedProgram(x, objective, self, program, timing, timing.duration, energy, shape)
+        made = EvaluatedProgram(x, objective, self, program, timing, timing.duration, energy, shape)
+        if self._watch is not None:
+            self._watch(made)
+        return made
 
     def constraints(self, point: EvaluatedProgram) -> FloatArray:
         """(m,), see `EvaluatedProgram.constraints`."""

@@ -24,7 +24,7 @@ from ..waypoints.blocks import MoveBlock
 from ..waypoints.variables import ProgramVariables
 from .front import FrontPoint
 from .options import EnergyTask, Goal
-from .paced_problem import EvaluatedProgram, FixedShape, PacedProblem
+from .paced_problem import EvaluatedProgram, FixedShape, PacedProblem, Watch
 from .pacing import Pacing
 
 _NEAR, _NEAR_BOX = 45, 0.3
@@ -53,6 +53,7 @@ class PacedSearch:
         clearance: m to keep.
         task, effort: see `pareto`.
         read_back: see `pareto`.
+        watch: called with every point that can be driven.
     """
 
     controller: Controller
@@ -64,6 +65,7 @@ class PacedSearch:
     task: EnergyTask
     effort: Effort
     read_back: ReadBack
+    watch: Watch | None = None
 
     @property
     def start(self) -> FloatArray:
@@ -127,7 +129,7 @@ class PacedSearch:
     def _problem(self, goal: Goal, pacing: Pacing, aim: Aim | None = None) -> PacedProblem:
         geometry = self._geometry(aim or Aim(self.effort.margin))
         consumption = self.task.consumption
-        return PacedProblem(self.controller, geometry, pacing, goal, consumption)
+        return PacedProblem(self.controller, geometry, pacing, goal, consumption, self.watch)
 
     def _geometry(self, aim: Aim) -> BlockProblem | FixedShape:
         if self.variables is None or self.scenes is None:

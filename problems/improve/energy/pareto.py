@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from ....core.cell.cell import Cell
 from ....core.collision.proof.certificate import scenes_of
 from ....core.dialect import Dialect
+from ....core.display import counted
 from ....core.errors import InputError, Note
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
@@ -30,7 +31,7 @@ from ..waypoints.options import WaypointTask as Wishes
 from ..waypoints.variables import ProgramVariables, make_variables
 from .front import Front, FrontPoint, without_dominated
 from .options import EnergyScope, EnergyTask, Goal
-from .paced_problem import EvaluatedProgram
+from .paced_problem import EvaluatedProgram, Watch
 from .paced_search import LATE, PacedSearch
 from .pacing import make_pacing
 
@@ -138,10 +139,11 @@ class _Work:
     def front(self, program: Program, count: int) -> Front:
         """All of it."""
         notes: list[Note] = []
-        search, given = self._prepared(program, notes)
         candidates: list[_Served] = []
+        seen = _Seen(self.report, candidates, 2 * count)
+        search, given = self._prepared(program, notes, seen.look)
         with suppress(KeyboardInterrupt, _Ended):
-            self._search(search, count, candidates)
+            self._search(search, count, candidates, seen)
         points: list[FrontPoint] = []
         with suppress(KeyboardInterrupt):
             for k, (goal, candidate) in enumerate(candidates):
@@ -164,7 +166,7 @@ class _Work:
 
     # -------------------------------------------------------------------------- searching
 
-    def _search(self, search: PacedSearch, count: int, found: list[_Served]) -> None:
+    def _search(self, search: PacedSearch, count: int, found: list[_Served], seen: _Seen) -> None:
         """Candidates from the fastest to the most frugal, added to ``found``.
 
         Where only speeds change, the program as it is is the fastest.
@@ -172,46 +174,43 @@ class _Work:
         first = search.measured(Goal(), search.start)
         if first.energy == 0.0:
             raise InputError("this program takes no energy: there is nothing to save")
+        seen.given = abs(first.energy)
         by_energy = 1.0 / abs(first.energy)
         fastest = first
         if search.variables is not None:
             fastest = search.search(Goal(1.0 / first.duration), search.start)
-        self._ask("searching", 1, 2 * count)
+        seen.ask(1)
         latest = fastest.duration * (1.0 + _FASTEST)
         goal = Goal(0.0, by_energy, latest)
         quick = search.search(goal, fastest.x)
         found.append((goal, quick))
-        self._ask("searching", 2, 2 * count)
+        seen.ask(2)
         frugal = search.search(Goal(0.0, by_energy), quick.x)
         for k in range(1, count - 1):
             share = (k / (count - 1)) ** _CROWDED
             latest = quick.duration + share * max(frugal.duration - quick.duration, 0.0)
             goal = Goal(0.0, by_energy, latest)
             found.append((goal, search.search_near(goal, found[-1][1].x)))
-            self._ask("searching", 2 + k, 2 * count)
+            seen.ask(2 + k)
         found.append((Goal(0.0, by_energy, max(frugal.duration, quick.duration)), frugal))
-        self._back(search, found, count)
+        self._back(search, found, count, seen)
 
-    def _back(
-        self, search: PacedSearch, found: list[tuple[Goal, EvaluatedProgram]], count: int
-    ) -> None:
+    def _back(self, search: PacedSearch, found: list[_Served], count: int, seen: _Seen) -> None:
         """Each once more, from the slower one's values: where time is short routes differ."""
         for k in range(len(found) - 2, 0, -1):
             goal, known = found[k]
             other = search.search_near(goal, found[k + 1][1].x)
             found[k] = goal, min(known, other, key=lambda candidate: candidate.rank)
-            self._ask("searching", 2 * count - k, 2 * count)
+            seen.ask(2 * count - k)
 
     def _tell(self, stage: str, done: int, total: int) -> bool:
         return self.report is not None and bool(self.report(Progress(stage, done, total)))
 
-    def _ask(self, stage: str, done: int, total: int) -> None:
-        if self._tell(stage, done, total):
-            raise _Ended
-
     # -------------------------------------------------------------------------- preparing
 
-    def _prepared(self, program: Program, notes: list[Note]) -> tuple[PacedSearch, FrontPoint]:
+    def _prepared(
+        self, program: Program, notes: list[Note], watch: Watch | None = None
+    ) -> tuple[PacedSearch, FrontPoint]:
         """Where to search, and the figures of the program that was given."""
         wishes = self._wishes
         program = replace(program, start=wishes.start or program.start)
@@ -233,6 +232,7 @@ class _Work:
             self.task,
             self.effort,
             self.read_back,
+            watch,
         )
         if not len(search.start):
             raise InputError(
@@ -285,6 +285,50 @@ class _Work:
         notes += [Note(f"stays as it is: {why}", i) for i, why in selection.reasons.items()]
         made = make_variables(program, robot, selection, wishes)
         return made if made.size else None
+
+
+@dataclass
+class _Seen:
+    """What a search has looked at, told as it goes on.
+
+    Args:
+        report: see `pareto`.
+        found: candidates so far.
+        total: searches.
+        given: energy of the program as it is; 0 while it is not known.
+    """
+
+    report: Report | None
+    found: list[_Served]
+    total: int
+    given: float = 0.0
+    done: int = 0
+    looked: int = 0
+
+    def look(self, point: EvaluatedProgram) -> None:
+        """Count a program that was driven; it may not end the search."""
+        self.looked += 1
+        if self.report is not None:
+            self.report(self._progress())
+
+    def ask(self, done: int) -> None:
+        """Tell that so many searches are over.
+
+        Raises:
+            _Ended: the user has seen enough.
+        """
+        self.done = done
+        if self.report is not None and self.report(self._progress()):
+            raise _Ended
+
+    def _progress(self) -> Progress:
+        stage = f"searching, {counted(self.looked, 'program')} driven"
+        if self.found and self.given:
+            points = [candidate for _, candidate in self.found]
+            fastest = min(point.duration for point in points)
+            least = 100.0 * min(point.energy for point in points) / self.given
+            stage += f", so far from {fastest:.3f} s down to {least:.0f} % of the energy"
+        return Progress(stage, self.done, self.total)
 
 
 class _Ended(Exception):

@@ -335,7 +335,7 @@ def test_ended_early_there_is_still_a_front():
 
     def enough(state):
         seen.append(state)
-        return len(seen) == 3
+        return state.stage.startswith("searching") and state.done == 3
 
     front = pareto(
         controller(),
@@ -349,6 +349,10 @@ def test_ended_early_there_is_still_a_front():
         enough,
     )
     assert 1 <= len(front.points) <= 4
+    searched = [state for state in seen if state.stage.startswith("searching")]
+    assert searched[-1].done == 3 < searched[-1].total
+    # It tells what it has so far, while each search goes on as well.
+    assert len(searched) > 10 and "% of the energy" in searched[-1].stage
 
 
 def test_too_few_points_are_refused():
