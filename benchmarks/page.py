@@ -8,7 +8,8 @@ meshes. ``page`` and ``compressed`` are the file's size as it is and as mail ser
 ``frames`` are those that headless Chromium draws in a second of playback at 1280 × 720, in
 software (SwiftShader), with the bodies that the case counts; as other work slows that,
 ``frames_cpu`` are those in a second of the CPU time of all its processes; ``seek`` is how long it
-takes to put all of the arm where it is at another time, without drawing. Needs Playwright and Chromium.
+takes to put all of the arm where it is at another time, without drawing. Needs Playwright and
+Chromium.
 """
 
 from __future__ import annotations

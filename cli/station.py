@@ -52,13 +52,15 @@ def station(
 
 
 def _tell(made: DrivenStation) -> None:
-    from ..tasks.results.stations import PAIRS, ROBOTS, WAITS
+    from ..tasks.results.stations import PAIRS, ROBOTS, SAVINGS, WAITS
 
     print_table(ROBOTS, made.robot_rows())
     if rows := made.wait_rows():
         print_table(WAITS, rows)
     if rows := made.pair_rows():
         print_table(PAIRS, rows)
+    if rows := made.saving_rows():
+        print_table(SAVINGS, rows)
     if made.deadlock is None:
         print_rich(f"station time {made.duration:.3f} s; {made.bottleneck} ends last")
     for note in made.notes:

@@ -16,8 +16,8 @@ from .clock import Schedule, StationRun
 from .orders import Orders, sections_mask
 from .station import RobotStation
 
-_SAMPLED = 0.004
-"""s between the instants at which a conflict is looked for before anything is proven."""
+_SAMPLED = (0.05, 0.002)
+"""s between the instants at which the least distance is looked for, and round the least."""
 
 
 @dataclass(frozen=True)
@@ -121,38 +121,53 @@ class StationProver:
         schedules = run.schedules[one], run.schedules[other]
         least, at = self._sampled(prover, schedules)
         clocks = schedules[0].clocked, schedules[1].clocked
-        until = at + _SAMPLED if least < clearance else np.inf
+        until = at + _SAMPLED[0] if least < clearance else np.inf
         meetings = Meetings(clocks, 2.0 * jitter, every=False, until=until)
         in_time = prover.prove(clearance, meetings)
         any_time = prover.prove(clearance, Meetings.at_any_time())
         interlocked = None
         if orders is not None and not any_time.proven:
-            together = self._together(one, other, orders, prover)
-            identity = Meetings.at_any_time().clocks
-            interlocked = prover.prove(clearance, Meetings(identity, together=together))
+            interlocked = self.interlocked(one, other, orders, self._actions)
         return PairClearance((one, other), in_time, any_time, interlocked, least, at)
 
-    def _together(
-        self, one: str, other: str, orders: Orders, prover: PairProver
-    ) -> Callable[..., np.ndarray]:
-        times = [np.array([action.time for action in self._actions[name]]) for name in (one, other)]
-        reachable = orders.together(one, other, (len(times[0]) + 1, len(times[1]) + 1))
-        lags = [self._station.members[name].run.timing.lag for name in (one, other)]
-        return sections_mask(
-            reachable,
+    def interlocked(
+        self, one: str, other: str, orders: Orders, actions: Mapping[str, Sequence[Action]]
+    ) -> PairVerdict:
+        """What is proven of two robots in all orders that the signals allow.
+
+        Args:
+            one, other: the robots.
+            orders: of these actions.
+            actions: of each robot.
+        """
+        prover = self.prover(one, other)
+        times = [np.array([action.time for action in actions[name]]) for name in (one, other)]
+        together = sections_mask(
+            orders.together(one, other, (len(times[0]) + 1, len(times[1]) + 1)),
             (times[0], times[1]),
             (lambda: prover.one.own_time, lambda: prover.other.own_time),
-            (lags[0], lags[1]),
+            (self._lag(one), self._lag(other)),
         )
+        clocks = Meetings.at_any_time().clocks
+        return prover.prove(self._station.clearance, Meetings(clocks, together=together))
+
+    def _lag(self, name: str) -> float:
+        return self._station.members[name].run.timing.lag
 
     def _sampled(
         self, prover: PairProver, schedules: tuple[Schedule, Schedule]
     ) -> tuple[float, float]:
         """The least distance at the schedule's own times, in steps, and when."""
-        t = np.arange(0.0, max(map(self._until, schedules)) + _SAMPLED, _SAMPLED)
-        q = [self._at(schedule, t) for schedule in schedules]
-        least, k, _ = prover.nearest(q[0], q[1])
-        return least, float(t[k])
+        last, step = max(map(self._until, schedules)), _SAMPLED[0]
+        first, least, at = 0.0, np.inf, 0.0
+        for finer in _SAMPLED:
+            t = np.arange(first, last + step, finer)
+            q = [self._at(schedule, t) for schedule in schedules]
+            found, k, _ = prover.nearest(q[0], q[1])
+            if found < least:
+                least, at = found, float(t[k])
+            first, last, step = max(at - finer, 0.0), at + finer, finer
+        return least, at
 
     def _until(self, schedule: Schedule) -> float:
         """s, when a robot stands still for good."""

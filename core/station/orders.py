@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.mutual.pair_proof import Together
 from ..errors import InputError
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
@@ -277,7 +278,7 @@ def sections_mask(
     times: tuple[NDArray[np.float64], NDArray[np.float64]],
     own: tuple[Callable[[], NDArray[np.float64]], Callable[[], NDArray[np.float64]]],
     lags: tuple[float, float],
-) -> Callable[[NDArray[np.int64], NDArray[np.int64]], NDArray[np.bool_]]:
+) -> Together:
     """Whether intervals of two robots can be passed at one time.
 
     Args:
@@ -296,9 +297,11 @@ def sections_mask(
         last = np.searchsorted(times[k], span[:, 1] + 1e-9, "right")
         return first, last
 
-    def together(i: NDArray[np.int64], j: NDArray[np.int64]) -> NDArray[np.bool_]:
+    def together(
+        i: NDArray[np.int64], j: NDArray[np.int64]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         (a0, a1), (b0, b1) = sections(0, i), sections(1, j)
         count = sums[a1 + 1, b1 + 1] - sums[a0, b1 + 1] - sums[a1 + 1, b0] + sums[a0, b0]
-        return np.asarray(count > 0)
+        return count > 0, count == (a1 + 1 - a0) * (b1 + 1 - b0)
 
     return together

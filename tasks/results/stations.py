@@ -16,6 +16,7 @@ from ...core.station.actions import Action
 from ...core.station.clearances import PairClearance
 from ...core.station.clock import Schedule, Spell, StationRun
 from ...core.station.deadlock import Deadlock
+from ...core.station.interlocks import Saving
 from ...core.station.orders import Orders
 from ...core.station.station import RobotStation
 
@@ -42,6 +43,13 @@ PAIRS = (
     ("at any time", "left"),
     ("under interlocks", "left"),
 )
+SAVINGS = (
+    ("robot", "left"),
+    ("statement", "left"),
+    ("line", "left"),
+    ("proven", "left"),
+    ("station quicker", "right"),
+)
 _SHORTEST = 1e-3
 """s of a wait that is shown."""
 
@@ -58,6 +66,7 @@ class DrivenStation:
         orders: what the signals allow; None where that is too much to look at.
         clearances: between each two robots; empty where no proof was asked for.
         jitter: s by which each robot may be early or late in what is proven in time.
+        savings: changes of interlocks that are proven and make the station quicker.
         notes: what a user should know.
     """
 
@@ -68,6 +77,7 @@ class DrivenStation:
     orders: Orders | None
     clearances: tuple[PairClearance, ...]
     jitter: float
+    savings: tuple[Saving, ...]
     notes: tuple[Note, ...]
 
     def __repr__(self) -> str:
@@ -173,6 +183,21 @@ class DrivenStation:
         where = "" if span is None else f" ({span.file}:{span.line})"
         return f"{name}'s move {move + 1}{where}"
 
+    def saving_rows(self) -> list[tuple[str, ...]]:
+        """A line a change of an interlock."""
+        return [
+            (
+                saving.robot,
+                saving.action.text,
+                _place(saving.action.span),
+                "can go"
+                if saving.earlier is None
+                else f"{saving.earlier:.3f} s or {1e3 * saving.place:.0f} mm of path earlier",
+                f"{saving.seconds:.3f} s",
+            )
+            for saving in self.savings
+        ]
+
     def findings(self) -> list[str]:
         """What is wrong, in sentences."""
         found = [] if self.deadlock is None else [str(self.deadlock)]
@@ -235,6 +260,18 @@ class DrivenStation:
             "pairs": [self._pair_json(pair) for pair in self.clearances],
             "deadlock": None if self.deadlock is None else str(self.deadlock),
             "may_lock": self.may_lock if self.orders is not None else None,
+            "interlocks": [
+                {
+                    "robot": saving.robot,
+                    "statement": saving.action.text,
+                    "place": _place(saving.action.span),
+                    "can_go": saving.earlier is None,
+                    "earlier_s": saving.earlier,
+                    "earlier_mm": None if saving.earlier is None else 1e3 * saving.place,
+                    "saved_s": saving.seconds,
+                }
+                for saving in self.savings
+            ],
             "findings": self.findings(),
             "notes": [str(note) for note in self.notes],
         }

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import InputError, Note
+from ...core.door import switched
+from ...core.errors import InputError, Note, OptionError
 from ..options.entries import MILLISECONDS, Extent, TaskOptions, number, switch
 from ..options.keywords import by_keywords
 from .opening import open_station
 
 if TYPE_CHECKING:
+    from ...core.station.interlocks import Saving
     from ..results.stations import DrivenStation
 
 _JITTER = 50e-3
@@ -28,6 +30,9 @@ class StationOptions(TaskOptions):
         Extent(0.0, 10_000.0),
     )
     no_proof: bool = switch("Only run the station: prove no clearances.")
+    interlocks: bool = switch(
+        "Look for waits that could go and outputs that could be set earlier, proven in every order."
+    )
 
 
 def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
@@ -43,9 +48,14 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
     from ...core.station.clearances import StationProver
     from ...core.station.clock import StationClock
     from ...core.station.deadlock import deadlock
+    from ...core.station.interlocks import savings
     from ...core.station.orders import explore
     from ..results.stations import DrivenStation
 
+    if options.no_proof and options.interlocks:
+        raise OptionError(
+            f"{switched('interlocks')} rests on proofs, which {switched('no_proof')} leaves out"
+        )
     station, actions = open_station(Path(source), options.say)
     options.say("running all programs on one clock")
     clock = StationClock(station, actions)
@@ -62,8 +72,20 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
         options.say("sweeping motions")
         prover = StationProver(station, actions)
         clearances = prover.all(run, options.jitter, orders, options.say)
+    found: list[Saving] = []
+    if options.interlocks and orders is not None and clearances:
+        options.say("looking for interlocks that hold robots up needlessly")
+        found = savings(station, actions, prover, clearances, orders)
     return DrivenStation(
-        station, actions, run, stuck, orders, tuple(clearances), options.jitter, tuple(notes)
+        station,
+        actions,
+        run,
+        stuck,
+        orders,
+        tuple(clearances),
+        options.jitter,
+        tuple(found),
+        tuple(notes),
     )
 
 

@@ -235,6 +235,30 @@ def test_an_interlock_is_proven_or_the_pair_of_moves_is_named(write: Write) -> N
     assert not pair.safe and not made.clear
 
 
+def test_a_release_that_comes_late_is_found_with_what_it_costs() -> None:
+    made = flyby.station("examples/two_robots/station.toml", interlocks=True)
+    (saving,) = made.savings
+    assert (saving.robot, saving.action.text) == ("left", "SetDO doLeft, 1")
+    assert saving.earlier is not None and saving.place > 0.1
+    assert 0.5 < saving.seconds <= saving.earlier + 1e-6
+    assert made.as_json()["interlocks"][0]["saved_s"] == pytest.approx(saving.seconds)
+
+
+def test_a_wait_that_protects_nothing_can_go(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "go 1", "go 2", "SetDO doOut,1"],
+                "two": ["go 0", "WaitDI diOut,1", "go 1", "go 0"],
+            },
+            '[links]\n"one.doOut" = "two.diOut"\n',
+        ),
+        no_proof=False,
+        interlocks=True,
+    )
+    assert made.clear and any(s.earlier is None and s.robot == "two" for s in made.savings)
+
+
 @pytest.mark.parametrize(
     ("rest", "words"),
     [

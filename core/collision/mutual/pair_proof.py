@@ -38,6 +38,10 @@ _CHUNK = 512
 BUDGET = 20_000_000
 
 
+Together = Callable[[IntArray, IntArray], tuple[NDArray[np.bool_], NDArray[np.bool_]]]
+"""Of intervals of two robots: whether both can be passed at once, and at all their places."""
+
+
 class ConflictCause(StrEnum):
     """Why two robots are not proven to keep clear of each other."""
 
@@ -81,7 +85,8 @@ class Meetings:
     Args:
         clocks: what makes of own times (L, 2) s of the one, and of the other, the station's.
         apart: s by which the two clocks may be off against each other; infinite for at any time.
-        together: of rows (K,) of intervals, whether the two can be there at once; None for always.
+        together: of rows (K,) of intervals, whether the two can be there at once, and whether they
+            can wherever they are on them; None for always.
         every: whether every pair of moves is looked at; else only the first conflict in time is
             looked for.
         until: s on the station's clock behind which nothing is looked for.
@@ -89,7 +94,7 @@ class Meetings:
 
     clocks: tuple[Callable[[FloatArray], FloatArray], Callable[[FloatArray], FloatArray]]
     apart: float = math.inf
-    together: Callable[[IntArray, IntArray], NDArray[np.bool_]] | None = None
+    together: Together | None = None
     every: bool = True
     until: float = math.inf
 
@@ -269,7 +274,7 @@ class _Search:
             if not meetings.every:
                 kept &= np.maximum(first[:, 0], second[:, 0]) - meetings.apart <= self._first
         if meetings.together is not None:
-            kept &= meetings.together(i, j)
+            kept &= meetings.together(i, j)[0]
         if meetings.every and self._verdict.conflicts:
             groups = prover.one.moves[i], prover.other.moves[j]
             decided = np.zeros((groups[0].max(initial=0) + 1, groups[1].max(initial=0) + 1), bool)
@@ -310,18 +315,39 @@ class _Search:
 
     def _judged(self, items: IntArray, found: PairBounds) -> IntArray:
         """Note what is too near, or as good as too near; what is to be halved."""
-        travel = self._travel(items).sum(axis=1)
-        near = found.distance + ROUNDING < self._wanted
-        near &= np.isfinite(found.distance)
-        near &= (travel < _LOCATED) | (
-            self._meetings.apart == math.inf and self._meetings.together is None
-        )
-        stalled = travel < _STALLED
-        off = stalled & (found.distance - travel >= self._wanted)
-        self._note(items, found, near, ConflictCause.NEAR)
-        self._note(items, found, off & ~near, ConflictCause.DEVIATION)
-        self._note(items, found, stalled & ~off & ~near, ConflictCause.STALLED)
-        return self._meeting(items[~(near | stalled)])
+        travel, known = self._travel(items).sum(axis=1), np.isfinite(found.distance)
+        distance = np.where(known, found.distance, np.inf) + ROUNDING
+        # Where they may be at once all along, halves tell no more than the whole.
+        located = (travel < _LOCATED) | self._always_at_once(items)
+        near = located & (distance < self._wanted)
+        # However short an interval is, deviations from the path stay what they are.
+        off = located & ~near & (distance + travel - self._off(items) < self._wanted)
+        stalled = (travel < _STALLED) & ~near & ~off
+        for chosen, cause in (
+            (near, ConflictCause.NEAR),
+            (off, ConflictCause.DEVIATION),
+            (stalled, ConflictCause.STALLED),
+        ):
+            self._note(items, found, chosen, cause)
+        return self._meeting(items[~(near | off | stalled)])
+
+    def _always_at_once(self, items: IntArray) -> NDArray[np.bool_]:
+        """Whether both may be anywhere on their intervals at one time, (K,)."""
+        if self._meetings.together is not None:
+            return self._meetings.together(items[:, 0], items[:, 1])[1]
+        if self._meetings.apart == math.inf:
+            return np.ones(len(items), dtype=bool)
+        first, second = self._clocked(items[:, 0], items[:, 1])
+        apart = np.maximum(first[:, 1] - second[:, 0], second[:, 1] - first[:, 0])
+        return np.asarray(apart <= self._meetings.apart)
+
+    def _off(self, items: IntArray) -> FloatArray:
+        """(K,) m, what deviations from both paths may take at the most."""
+        prover, off = self._prover, np.zeros(len(items))
+        for side, motion in ((0, prover.one), (1, prover.other)):
+            body = prover.pairs[items[:, 2], side]
+            off += np.nan_to_num(motion.side.swept.off[items[:, side], body], posinf=1e9)
+        return off
 
     def _halved(self, items: IntArray) -> IntArray:
         """The same items with one interval of each halved."""

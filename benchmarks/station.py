@@ -1,0 +1,176 @@
+"""Several robots in one cell: what proofs of their clearances cost, and whether they hold.
+
+    python benchmarks/station.py [--case four-robots] [--pairs 2000] [--json]
+
+``crossing``: two robots whose tools cross one line at one instant; ``handshake``: the example of
+two robots, with the interlock that could be given back earlier; ``four-robots``: 100 moves each,
+two facing pairs that share the middle under interlocks, and the same with a stop at every point;
+``random-pairs``: programs at random, proofs beside sampling at ten times the controller's rate.
+CPU time of the process, kernels compiled; emulation and bounds of deviation are not counted.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+from report import Figure, main
+
+import flyby
+from flyby.core.cell.floor import bare_cell
+from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
+from flyby.core.collision.mutual.robot_motion import RobotMotion
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.move import MoveJ
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget
+from flyby.core.program.zone import Radius
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.spatial.pose import Pose
+from flyby.core.station.clearances import StationProver
+from flyby.core.station.clock import StationClock
+from flyby.core.station.orders import explore
+from flyby.validation.scenes.four_robots import four_robots
+
+EXAMPLE = Path(__file__).parents[1] / "examples/two_robots/station.toml"
+CASES = ("crossing", "handshake", "four-robots", "random-pairs")
+JITTER = 0.05
+CLEARANCE = 0.01
+HOME = np.array([0.0, -1.2, 1.6, -1.9, -1.57, 0.0])
+REACH = np.array([1.0, 0.5, 0.6, 0.5, 0.5, 0.5])
+
+
+def timed(job: Callable[[], object]) -> tuple[float, object]:
+    """CPU seconds of a job, and what it gave."""
+    begin = time.process_time()
+    made = job()
+    return time.process_time() - begin, made
+
+
+def crossing() -> Iterator[Figure]:
+    """Two robots drive the same joint turn towards each other and back."""
+    prover = PairProver(_motion(Pose(), 1, turned=True), _motion(Pose((0.9, 0.0, 0.0)), 2))
+    prover.prove(CLEARANCE, _in_time(0.0))
+    cpu, verdict = timed(lambda: prover.prove(CLEARANCE, _in_time(2 * JITTER)))
+    yield Figure("crossing", "proof_cpu_s", cpu, "s")
+    yield Figure("crossing", "conflicts_found", len(verdict.conflicts), "")  # type: ignore[attr-defined]
+    yield Figure("crossing", "dense_mm", 1e3 * _sampled(prover), "mm")
+
+
+def handshake() -> Iterator[Figure]:
+    """The example."""
+    made = flyby.station(EXAMPLE, interlocks=True)
+    yield Figure("handshake", "station_time_s", made.duration, "s")
+    yield Figure(
+        "handshake", "proven_mm", 1e3 * made.station.clearance if made.clear else 0.0, "mm"
+    )
+    yield Figure("handshake", "dense_mm", 1e3 * min(p.least for p in made.clearances), "mm")
+    saved = max((saving.seconds for saving in made.savings), default=0.0)
+    yield Figure("handshake", "interlock_time_saved_s", saved, "s")
+
+
+def four() -> Iterator[Figure]:
+    """Four robots of 100 moves."""
+    station, actions = four_robots()
+    run = StationClock(station, actions).run()
+    stopping, its_actions = four_robots(stops=True)
+    stops = StationClock(stopping, its_actions).run().duration
+    yield Figure("four-robots", "station_time_s", run.duration, "s", "stops only", stops)
+    _prove_all(StationProver(station, actions), station, run, actions)  # compiles
+    swept, prover = timed(lambda: StationProver(station, actions))
+    yield Figure("four-robots", "sweep_cpu_s", swept, "s")
+    for name, cpu, proven in _prove_all(prover, station, run, actions):
+        yield Figure("four-robots", f"proof_cpu_s {name}", cpu, "s")
+        yield Figure("four-robots", f"proven_mm {name}", proven, "mm")
+
+
+def _prove_all(prover, station, run, actions) -> list[tuple[str, float, float]]:
+    orders = explore(station, actions)
+    spent, fine = dict.fromkeys(("in time", "any time", "interlocked"), 0.0), {}
+    for one, other in combinations(station.members, 2):
+        pair = prover.prover(one, other)
+        clocks = tuple(run.schedules[name].clocked for name in (one, other))
+        jobs = {
+            "in time": lambda p=pair, c=clocks: p.prove(
+                CLEARANCE, Meetings(c, 2 * JITTER, every=False)
+            ),
+            "any time": lambda p=pair: p.prove(CLEARANCE, Meetings.at_any_time()),
+            "interlocked": lambda a=one, b=other: prover.interlocked(a, b, orders, actions),
+        }
+        for name, job in jobs.items():
+            cpu, verdict = timed(job)
+            spent[name] += cpu
+            fine[name] = fine.get(name, True) and verdict.proven
+    return [(name, spent[name], 1e3 * CLEARANCE if fine[name] else 0.0) for name in spent]
+
+
+def random_pairs(count: int) -> Iterator[Figure]:
+    """Proofs of two UR5e that drive at random, beside dense sampling."""
+    wrong = unproven = roomy = 0
+    cpu = 0.0
+    for seed in range(count):
+        gap = float(np.random.default_rng(10_000 + seed).uniform(0.9, 1.7))
+        prover = PairProver(
+            _motion(Pose(), 2 * seed, turned=True), _motion(Pose((gap, 0.0, 0.0)), 2 * seed + 1)
+        )
+        spent, verdict = timed(lambda p=prover: p.prove(CLEARANCE, _in_time(0.0)))
+        cpu += spent
+        least = _sampled(prover)
+        wrong += verdict.proven and least < CLEARANCE - 2e-5
+        roomy += least > 2 * CLEARANCE
+        unproven += not verdict.proven and least > 2 * CLEARANCE
+    case = "random-pairs"
+    yield Figure(case, "cases", count, "")
+    yield Figure(case, "proven_but_nearer", wrong, "")
+    yield Figure(case, "not_proven_of_twice_the_clearance", unproven / max(roomy, 1), "")
+    yield Figure(case, "proof_cpu_s", cpu / count, "s")
+
+
+def _motion(base: Pose, seed: int, turned: bool = False) -> RobotMotion:
+    rng = np.random.default_rng(seed)
+    if turned:
+        base = Pose(base.position, (0.0, 0.0, 0.0, 1.0))
+    robot = find_robot("ur/ur5e").with_base(base)
+    moves = tuple(
+        MoveJ(
+            JointTarget(tuple(HOME + REACH * rng.uniform(-1.0, 1.0, 6))),
+            Speed(joint=0.8),
+            Radius(0.03, 0.03, 0.03),
+        )
+        for _ in range(5)
+    )
+    controller = Controller(find_vendor("ur"), robot)
+    run = controller.run(Program(moves, start=JointTarget(tuple(HOME))), None, None)
+    return RobotMotion(str(seed), controller, run, bare_cell(robot, "ur", floor=False))
+
+
+def _in_time(apart: float) -> Meetings:
+    return Meetings((lambda own: own, lambda own: own), apart, every=False)
+
+
+def _sampled(prover: PairProver) -> float:
+    """m, the least distance at ten times the controller's rate."""
+    runs = prover.one.run, prover.other.run
+    period = 0.1 * float(np.diff(runs[0].trajectory.t[:2])[0])
+    t = np.arange(0.0, max(run.duration for run in runs) + period, period)
+    q = [
+        np.stack([np.interp(t, run.trajectory.t, joint) for joint in run.trajectory.q.T], -1)
+        for run in runs
+    ]
+    least = prover.nearest(q[0], q[1])[0]
+    return least if math.isfinite(least) else math.inf
+
+
+def measure(case: str, pairs: int) -> Iterator[Figure]:
+    """The figures of a case."""
+    jobs = {"crossing": crossing, "handshake": handshake, "four-robots": four}
+    yield from random_pairs(pairs) if case not in jobs else jobs[case]()
+
+
+if __name__ == "__main__":
+    main(__doc__ or "", measure, CASES, pairs=200)
