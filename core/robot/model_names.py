@@ -32,6 +32,7 @@ def words_of(name: str) -> tuple[str, ...]:
     said = re.sub(r"(?<=\d)r(?=\d{3,4})", " r ", said)
     said = re.sub(r"\b(r ?\d{3,4})(?=[a-z]+)", r"\1 ", said)
     said = re.sub(r"(?<=\d)(kg|mm?)\b", " ", said)
+    said = re.sub(r"(?<=\d)(?=[a-z]{3})", " ", said)  # KR5ARC
     said = re.sub(r"\bur (?=\d)", "ur", said)
     said = re.sub(r"\b(ur\d+) e\b", r"\1e", said)
     words = _WORD.findall(said)
