@@ -83,6 +83,7 @@ CALLED = {
     "KR5ARC": "kuka/kr5-arc",
     "IRB140-6/0.8": "abb/irb140-6-081",
     "KR 120 R2700-2": "kuka/kr120-r2700-2",
+    "#KR210R2700_2 C4 FLR": "kuka/kr210-r2700-2",
     "UR 5e": "ur/ur5e",
     "ur5e": "ur/ur5e",
     "IRB_120_3kg_0.58m": "abb/irb120-3-058",
