@@ -78,9 +78,11 @@ def no_backup(path: str | Path, registry: Registry) -> InputError:
     """That there is none, to be raised."""
     kinds = ", ".join(sorted(v.name for v in registry.vendors.values() if v.backups))
     what = "folder" if Path(path).is_dir() else "file"
+    packed = [name for name in names_below(Path(path)) if name.lower().endswith(".zip")]
+    which = f": {', '.join(packed[:_NAMED])}, perhaps" if packed else ""
     return InputError(
         f"{path}: no backup is in this {what}: nothing in it marks one of a controller of "
-        f"{kinds}; name the folder or archive that the controller has written"
+        f"{kinds}; name the folder or archive that the controller has written{which}"
     )
 
 

@@ -136,3 +136,8 @@ def test_programs_outside_a_backup_are_named(tmp_path: Path) -> None:
     assert "the backup in deep/in is taken" in note.message
     assert note.message.endswith("outside it: stray/other.mod")
     assert opened(tmp_path / "deep").notes == ()
+
+
+def test_an_archive_in_a_folder_is_named(tmp_path: Path) -> None:
+    _made(tmp_path, "in/b.zip", "README.md")
+    assert str(no_backup(tmp_path, ONE)).endswith("has written: in/b.zip, perhaps")
