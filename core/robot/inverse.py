@@ -18,6 +18,7 @@ from .kinematics.arm_geometry import EXACT, Family, Recognised
 from .kinematics.chain import Chain
 from .kinematics.closed_form import SLACK
 from .kinematics.numerical import solve_numerically
+from .kinematics.scara import solve_scara
 from .kinematics.spherical_wrist import solve_spherical_wrist
 from .kinematics.tracking import track
 from .kinematics.ur_geometry import solve_parallel_axes
@@ -35,6 +36,7 @@ SAME = 1e-6
 SOLVERS = {
     Family.SPHERICAL_WRIST: solve_spherical_wrist,
     Family.PARALLEL_AXES: solve_parallel_axes,
+    Family.SCARA: solve_scara,
 }
 
 

@@ -37,7 +37,7 @@ def posture(robot: Robot, q: ArrayLike) -> Posture | None:
     """The posture of a robot at a configuration (N,); None of an arm with six motors whose last
     three axes do not meet."""
     known = robot.recognised
-    if known is None:
+    if known is None or known.family is Family.SCARA:
         return None
     arm, own = known.geometry, np.asarray(q, dtype=float)[:6]
     _, q2, q3, q4 = (float(value) for value in known.angles(own)[:4])

@@ -55,7 +55,8 @@ def differing(wanted: Signs, found: Signs) -> tuple[str, ...]:
 
 
 def _family(robot: Robot) -> Family | None:
-    return None if robot.recognised is None else robot.recognised.family
+    known = robot.recognised
+    return None if known is None or known.family is Family.SCARA else known.family
 
 
 def _sign(value: float) -> int:

@@ -238,7 +238,7 @@ class EmulationChecks(Subject):
         self.need("reader", "writer")
         robot, run = self._drive(data, self.zones)
         assume(robot.name.partition("/")[2] in self.driven_robots())
-        again = self.read_back(self.vendor.write(run.program, robot))
+        again = self.read_back(self.vendor.write(run.program, robot), robot)
         try:
             copy = self.controller(robot).run(again, period=PERIOD)
         except MotionError as error:

@@ -54,7 +54,7 @@ class LanguageChecks(Subject):
     def test_what_is_written_is_read_again(self, data: st.DataObject) -> None:
         self.need("reader", "writer")
         robot, program, sources = self._written(data)
-        again = self.read_back(sources)
+        again = self.read_back(sources, robot)
         found = difference(said(program, self.vendor, robot, again), again, self.precision)
         assert found is None, f"move {found[0] + 1} comes back with another {found[1]}"
 
@@ -63,7 +63,7 @@ class LanguageChecks(Subject):
     def test_writing_again_changes_nothing(self, data: st.DataObject) -> None:
         self.need("reader", "writer")
         robot, _, sources = self._written(data)
-        assert dict(self.vendor.write(self.read_back(sources), robot)) == dict(sources)
+        assert dict(self.vendor.write(self.read_back(sources, robot), robot)) == dict(sources)
 
     def _written(self, data: st.DataObject) -> tuple[Robot, Program, Sources]:
         robot = self.vendor.robot(data.draw(st.sampled_from(self.driven_robots())))

@@ -46,7 +46,7 @@ class PatchingChecks(Subject):
     def test_a_patch_gives_the_changed_program(self, data: st.DataObject) -> None:
         self.need("reader", "writer", "patcher")
         robot = self.vendor.robot(data.draw(st.sampled_from(self.driven_robots())))
-        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
+        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot), robot)
         change = self._change(data, program)
         before = reading_of(program)
         try:
@@ -64,7 +64,7 @@ class PatchingChecks(Subject):
     def test_a_patch_of_nothing_changes_no_file(self, data: st.DataObject) -> None:
         self.need("reader", "writer", "patcher")
         robot = self.vendor.robot(self.driven_robots()[0])
-        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
+        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot), robot)
         assert dict(self.vendor.patch(program, robot)) == {}
 
     @PROGRAM_EXAMPLES
@@ -79,7 +79,7 @@ class PatchingChecks(Subject):
         if wording is None:
             pytest.skip(f"the texts of {self.name} are not searched")
         robot = self.vendor.robot(self.driven_robots()[0])
-        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot))
+        program = self.read_back(self.vendor.write(data.draw(self.programs(robot)), robot), robot)
         change = self._change(data, program)
         own = change.statement
         known = [span for span in change.origin.numbers if span is not None]

@@ -28,7 +28,7 @@ class RecordingChecks(Subject):
         assert sources and all(sources.values())
         if self.vendor.reader is None:
             return
-        again = Program(self.read_back(sources).moves)
+        again = Program(self.read_back(sources, robot).moves)
         wanted = Program(said(program, self.vendor, robot, again).moves)
         found = difference(wanted, again, self.precision)
         assert found is None, f"move {found[0] + 1} is driven with another {found[1]}"

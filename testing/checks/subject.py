@@ -19,6 +19,7 @@ from ...core.program.target import JointTarget, PoseTarget, Target
 from ...core.program.tool import Load, Tool, WorkObject
 from ...core.program.zone import Zone
 from ...core.registry import find_vendor
+from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
 from ...core.source.patch.edits import TOLERANCE
 from ...core.vendor import Vendor
@@ -162,14 +163,20 @@ class Subject:
             if getattr(self.vendor, part) is None:
                 pytest.skip(f"{self.name} has no {part}")
 
-    def read_back(self, sources: Sources) -> Program:
-        """The program in ``sources``, read from files as a user would."""
-        return self.read_bytes({file: text.encode() for file, text in sources.items()})
+    def read_back(self, sources: Sources, robot: Robot | None = None) -> Program:
+        """The program in ``sources``, read from files as a user would.
 
-    def read_bytes(self, sources: dict[str, bytes]) -> Program:
+        Of an arm with an axis that slides no text says whether its values are mm or degrees: the
+        reader is told the robot then, and none otherwise.
+        """
+        slides = robot is not None and any(j.kind is JointKind.PRISMATIC for j in robot.joints)
+        texts = {file: text.encode() for file, text in sources.items()}
+        return self.read_bytes(texts, robot if slides else None)
+
+    def read_bytes(self, sources: dict[str, bytes], robot: Robot | None = None) -> Program:
         """The program in files of these bytes; the first that the reader takes is the main one."""
         main = next(f for f in sources if f.lower().endswith(self.vendor.suffixes))
         with TemporaryDirectory() as folder:
             for file, data in sources.items():
                 (Path(folder) / file).write_bytes(data)
-            return self.vendor.read_file(Path(folder) / main)
+            return self.vendor.read_file(Path(folder) / main, robot=robot)

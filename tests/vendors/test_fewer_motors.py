@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import flyby
-from flyby.core.errors import FaultCause
+from flyby.core.errors import FaultCause, InputError
 
 RAPID = """MODULE Pal
   PERS tooldata tGrip:=[TRUE,[[0,0,350],[1,0,0,0]],[35,[0,0,150],[1,0,0,0],0,0,0]];
@@ -116,3 +116,39 @@ def test_targets_of_arms_without_a_spherical_wrist_are_driven(tmp_path) -> None:
     )
     run = driven(tmp_path, f"{text}  ENDPROC\nENDMODULE\n", ".mod", "CRB 15000-5/0.95")
     assert run.faultless, run.faults
+
+
+SCARA = """MODULE Pick
+  CONST jointtarget home:=[[30,60,-20,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  CONST robtarget pick:=[[350,300,150],[0,1,0,0],[0,-1,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  PROC main()
+    MoveAbsJ home,v1000,fine,tool0;
+    MoveJ Offs(pick,0,0,50),v2000,z10,tool0;
+    MoveL pick,v500,fine,tool0;
+    MoveL Offs(pick,0,0,50),v500,fine,tool0;
+    MoveAbsJ home,v1000,fine,tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_a_scaras_third_axis_counts_in_mm(tmp_path) -> None:
+    run = driven(tmp_path, SCARA, ".mod", "IRB 910SC-3/0.65")
+    assert run.faultless, run.faults
+    home, line = run.trajectory.q[-1], run.trajectory.move == 2
+    np.testing.assert_allclose(home, [*np.radians([30, 60]), -0.02, 0, 0, 0], atol=1e-9)
+    assert run.trajectory.q[line, 2].min() == pytest.approx(0.150 - 0.220, abs=1e-6)
+    with pytest.raises(InputError, match="not written yet"):
+        flyby.write(run.program, tmp_path / "new", robot=run.robot.name)
+
+
+def test_a_scara_of_kuka_is_written_in_mm(tmp_path) -> None:
+    text = KRL.replace("A2 -90,A3 90,A4 0,A5 90", "A2 60,A3 150,A4 0,A5 0")
+    text = text.replace("Y 800", "Y 100").replace("X 1900", "X 400").replace("Y -800", "Y -200")
+    text = (
+        text.replace("Z 600", "Z 300").replace("Z -400", "Z -50").replace("Z 300,A 0", "Z 0,A 0", 1)
+    )
+    run = driven(tmp_path, text, ".src", "KR 10 scara R600 Z300")
+    assert run.faultless, run.faults
+    written = flyby.write(run.program, tmp_path / "new", robot=run.robot.name)
+    assert any("A3 150" in file.read_text("utf-8") for file in written)

@@ -157,8 +157,11 @@ def _logger(robot: Robot) -> str:
 
 def _axes(robot: Robot) -> list[str]:
     """The axes of a sample in rad and m."""
-    arm = [f"FB_Q[I].A{k}*{_RAD}" for k in range(1, robot.arm_size + 1)]
     linear = JointKind.PRISMATIC
+    arm = [
+        f"FB_Q[I].A{k}*{'0.001' if joint.kind is linear else _RAD}"
+        for k, joint in enumerate(robot.joints, 1)
+    ]
     return arm + [
         f"FB_Q[I].E{k}*{'0.001' if axis.joint.kind is linear else _RAD}"
         for k, axis in enumerate(robot.external_axes, 1)

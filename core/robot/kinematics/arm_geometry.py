@@ -27,6 +27,8 @@ class Family(StrEnum):
     """Axes 4, 5 and 6 meet in a point (ABB, KUKA and most others)."""
     PARALLEL_AXES = "parallel axes"
     """Axes 2, 3 and 4 are parallel (Universal Robots)."""
+    SCARA = "SCARA"
+    """Axes 1, 2 and 4 and a slide are parallel; see `scara`."""
 
 
 class ArmGeometry(NamedTuple):
@@ -97,16 +99,53 @@ class _Lines(NamedTuple):
 def recognise(chain: Chain) -> Recognised | None:
     """The closed form that fits an arm's chain (base to flange) within `NEAR`, None if none."""
     if chain.prismatic.any():
-        return None
+        return _scara(chain)
     chain, coupling = _uncoupled(chain)
     if coupling.shape != (6, 6) or abs(round(float(np.linalg.det(coupling)))) != 1:
         return None
     lines = _lines(chain)
-    for family in Family:
+    for family in (Family.SPHERICAL_WRIST, Family.PARALLEL_AXES):
         geometry, error = _geometry(lines, family)
         if error < NEAR:
             return Recognised(family, geometry, error, coupling)
     return None
+
+
+def _scara(chain: Chain) -> Recognised | None:
+    slides = [False, False, True, False, False, False]
+    if chain.joint.tolist() != list(range(6)) or chain.prismatic.tolist() != slides:
+        return None
+    lines = _lines(chain)
+    z = lines.directions
+    up = z[0]
+    ahead = lines.points[1] - lines.points[0]
+    ahead = ahead - up * (up @ ahead)
+    length = float(np.linalg.norm(ahead))
+    if length < 1e-3:
+        return None
+    x = ahead / length
+    frame = np.array([x, np.cross(up, x), up])
+    points, axes = (lines.points - lines.points[0]) @ frame.T, z @ frame.T
+    centre, apart = _meeting_point(points[3:], axes[3:])
+    misses = [float(np.linalg.norm(np.cross(up, z[k]))) for k in (1, 2, 3)]
+    misses += [abs(float(z[3] @ z[4])), abs(float(z[4] @ z[5])), apart]
+    misses += [1.0] if np.linalg.norm(centre[:2] - points[1, :2]) < 1e-3 else []
+    signs = np.array([1.0, *(np.sign(up @ z[k]) or 1.0 for k in (1, 2)), 1.0, 1.0, 1.0])
+    geometry = ArmGeometry(
+        frame=frame,
+        origin=lines.points[0].copy(),
+        zero=lines.R.T @ frame.T,
+        centre=lines.R.T @ (lines.points[0] + frame.T @ centre - lines.p),
+        lateral=float(centre[2]),
+        shoulder=np.zeros(2),
+        elbow=np.ascontiguousarray(points[1, :2]),
+        wrist=np.ascontiguousarray(centre[:2]),
+        signs=signs,
+        axes=np.ascontiguousarray(axes[3:]),
+        centre_to_fourth=np.zeros(3),
+    )
+    error = max(misses)
+    return Recognised(Family.SCARA, geometry, error, np.eye(6)) if error < NEAR else None
 
 
 def _uncoupled(chain: Chain) -> tuple[Chain, FloatArray]:

@@ -55,7 +55,7 @@ def solve_spherical_wrist(
             second, third, bend, beyond = solve_elbow(arm, x, centre[2], elbow == 1)
             wrist = compose(rotation_about(Y, -(second + third)), turned)
             n = 4 * shoulder + 2 * elbow
-            sine = _solve_wrist(arm, wrist, q[n], q[n + 1])
+            sine = solve_wrist(arm, wrist, q[n], q[n + 1])
             missing = max(aside, beyond)
             for flip in range(2):
                 q[n + flip, 0], q[n + flip, 1] = first, second
@@ -68,7 +68,7 @@ def solve_spherical_wrist(
 
 
 @inner
-def _solve_wrist(
+def solve_wrist(
     arm: ArmGeometry, target: Rotation, plain: FloatArray, flipped: FloatArray
 ) -> float:
     """Write joints 4 to 6 of both ways to make a wrist rotation.

@@ -66,8 +66,8 @@ class AbbConfiguration:
 
     @property
     def hint(self) -> bool:
-        """False: it names a solution."""
-        return False
+        """Whether it names no solution: where it leaves all of them open."""
+        return self.undecided == _ALL
 
     def admits(self, label: Configuration) -> bool:
         """Whether cfx is the label's, and each quadrant the label's or a neighbour of it.

@@ -11,6 +11,7 @@ from ....core.motion.path.present_position import PresentPosition
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Tool, WorkObject
+from ....core.robot.joint import JointKind
 from ....core.spatial.pose import Pose
 from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, Record, pose_record
 from .configuration import AbbConfiguration, label
@@ -20,6 +21,27 @@ if TYPE_CHECKING:
     from ....core.robot.model import Robot
 
 ARM_AXES = 6
+
+
+def axis_values(robot: Robot | None, q: Sequence[float] | FloatArray) -> list[float]:
+    """Values of the arm's axes as RAPID counts them, in degrees and mm, of those in rad and m."""
+    return [
+        1e3 * float(v) if slide else math.degrees(float(v))
+        for v, slide in zip(q, _slides(robot), strict=False)
+    ]
+
+
+def arm_values(robot: Robot | None, values: Sequence[float]) -> tuple[float, ...]:
+    """Reverse of `axis_values`."""
+    slides = zip(values, _slides(robot), strict=False)
+    return tuple(v / 1e3 if slide else math.radians(v) for v, slide in slides)
+
+
+def _slides(robot: Robot | None) -> list[bool]:
+    """Which of the arm's axes slide; none where the robot is not known."""
+    if robot is None:
+        return [False] * ARM_AXES
+    return [joint.kind is JointKind.PRISMATIC for joint in robot.joints]
 
 
 class Position(PresentPosition):
@@ -121,6 +143,6 @@ class Position(PresentPosition):
 
     def _joint_record(self, q: FloatArray) -> Record:
         arm = len(q) - len(self._axes)
-        joints = [math.degrees(v) for v in q[:arm]][:ARM_AXES]
+        joints = axis_values(self.robot, q[:arm])[:ARM_AXES]
         robax = tuple(joints + [0.0] * (ARM_AXES - len(joints)))
         return (robax, self._external([float(v) for v in q[arm:]]))

@@ -47,6 +47,7 @@ from ..values.types import (
     Value,
 )
 from .configuration import AbbConfiguration
+from .position import arm_values
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:
@@ -291,7 +292,7 @@ class Converter:
         for number, degrees in enumerate(robax):
             if abs(degrees) >= UNUSED_AXIS:
                 raise SourceError(f"axis {number + 1} of the arm has no value (9E9)", span)
-        joints = tuple(math.radians(v) for v in robax)
+        joints = arm_values(self._robot, robax)
         external = self._external(extax, span, offsets)
         return self._guard(span, lambda: JointTarget(joints, external, name))
 

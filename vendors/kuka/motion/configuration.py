@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from ....core.errors import InputError
 from ....core.program.target import Configuration
+from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.robot.posture import posture
 
@@ -97,10 +99,17 @@ class KukaConfiguration:
 
 
 def label(robot: Robot, q: NDArray[np.float64]) -> KukaConfiguration | None:
-    """The label of joint values (N,) rad; None for an arm without a spherical wrist."""
+    """The label of joint values (N,) rad; None for an arm of another number of axes than six.
+
+    Of a SCARA Turn alone is looked at: what Status counts there no source says.
+    """
+    if robot.arm_size != 6:
+        return None
     at = posture(robot, q)
     if at is None:
-        return None
+        slides = [joint.kind is JointKind.PRISMATIC for joint in robot.joints]
+        turns = [0.0 if slide else float(value) for slide, value in zip(slides, q, strict=False)]
+        return _turned(turns, status=0, undecided=0b111)
     # Clear of the singular line "in front of it" is A3 above φ.
     status = ((at.shoulder < 0, 1), (at.elbow >= 0, 2), (at.wrist < 0, 4))
     edges = (
@@ -108,11 +117,18 @@ def label(robot: Robot, q: NDArray[np.float64]) -> KukaConfiguration | None:
         (abs(at.elbow) <= EDGE_DISTANCE, 2),
         (abs(at.wrist) <= EDGE_ANGLE, 4),
     )
-    axes = [float(value) for value in q[:6]]
-    return KukaConfiguration(
+    return _turned(
+        [float(value) for value in q[:6]],
         status=sum(bit for true, bit in status if true),
+        undecided=sum(bit for true, bit in edges if true),
+    )
+
+
+def _turned(axes: Sequence[float], status: int, undecided: int) -> KukaConfiguration:
+    return KukaConfiguration(
+        status=status,
         turn=sum(1 << i for i, value in enumerate(axes) if value < 0),
-        undecided_status=sum(bit for true, bit in edges if true),
+        undecided_status=undecided,
         undecided_turn=sum(1 << i for i, value in enumerate(axes) if abs(value) <= EDGE_ANGLE),
     )
 

@@ -28,6 +28,27 @@ if TYPE_CHECKING:
 WHERE = "where the robot stands"
 
 
+def axis_values(robot: Robot | None, q: Sequence[float] | FloatArray) -> list[float]:
+    """Values of the arm's axes as KRL counts them, in degrees and mm, of those in rad and m."""
+    return [
+        1e3 * float(v) if slide else math.degrees(float(v))
+        for v, slide in zip(q, _slides(robot), strict=False)
+    ]
+
+
+def arm_values(robot: Robot | None, values: Sequence[float]) -> tuple[float, ...]:
+    """Reverse of `axis_values`."""
+    slides = zip(values, _slides(robot), strict=False)
+    return tuple(v / 1e3 if slide else math.radians(v) for v, slide in slides)
+
+
+def _slides(robot: Robot | None) -> list[bool]:
+    """Which of the arm's axes slide; none where the robot is not known."""
+    if robot is None:
+        return [False] * len(AXIS_FIELDS)
+    return [joint.kind is JointKind.PRISMATIC for joint in robot.joints]
+
+
 class Position:
     """Follows a robot from target to target.
 
@@ -114,9 +135,7 @@ class Position:
 
     def axis_struct(self, q: Sequence[float] | FloatArray) -> Struct:
         """A configuration (N,) as axis values."""
-        fields: dict[str, Value] = {
-            name: math.degrees(float(v)) for name, v in zip(AXIS_FIELDS, q, strict=False)
-        }
+        fields: dict[str, Value] = dict(zip(AXIS_FIELDS, axis_values(self._robot, q), strict=False))
         return Struct("e6axis", {**fields, **self._external_fields(q)})
 
     def forward(self, target: JointTarget, placement: Placement) -> Pose | None:

@@ -20,7 +20,7 @@ from ..values.provenance import Sources
 from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS
 from ..values.values import Placement, Struct, Unknown, Value, find_unknown, left_open, shown
 from .configuration import KukaConfiguration
-from .position import Position
+from .position import Position, arm_values
 
 POSE_NUMBERS = (*FRAME_FIELDS, "s", "t", *EXTERNAL_FIELDS)
 """The numbers of a position, in the order of an origin's numbers."""
@@ -63,6 +63,7 @@ class Targets:
         self, robot: Robot | None, position: Position, note: Callable[[str, str, Span], None]
     ) -> None:
         self._axes = None if robot is None else robot.external_axes
+        self._robot = robot
         coupled = () if robot is None else robot.coupled_ranges
         self._kept = [one for one in coupled if one.fixed]
         self._position = position
@@ -105,7 +106,8 @@ class Targets:
         self._keep(numbers, span)
         external, outside, kept = self._external(value.fields, span)
         try:
-            target = JointTarget(tuple(map(math.radians, numbers.values())), external, value.label)
+            arm = arm_values(self._robot, list(numbers.values()))
+            target = JointTarget(arm, external, value.label)
         except InputError as error:
             raise SourceError(str(error), span) from None
         sources = Sources.of([value.fields.get(name) for name in AXIS_NUMBERS])

@@ -84,8 +84,10 @@ class KrlLiterals:
             yield from _pose(old, new)
             yield from self._external(old.external, new.external)
         elif isinstance(old, JointTarget) and isinstance(new, JointTarget):
-            for k, (a, b) in enumerate(zip(old.joints, new.joints, strict=True), 1):
-                yield _angle(f"A{k}", a, b)
+            joints = zip(old.joints, new.joints, self._robot.joints, strict=True)
+            for k, (a, b, joint) in enumerate(joints, 1):
+                component = _length if joint.kind is JointKind.PRISMATIC else _angle
+                yield component(f"A{k}", a, b)
             yield from self._external(old.external, new.external)
         elif isinstance(old, Speed) and isinstance(new, Speed):
             yield from _speed(old, new, len(use.origin.numbers))

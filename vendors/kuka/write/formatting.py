@@ -15,6 +15,7 @@ from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.spatial.pose import Pose, Vector3
 from ..motion.configuration import KukaConfiguration
+from ..motion.position import axis_values
 from ..values.angles import written_angles
 from .numbers import number
 
@@ -50,7 +51,7 @@ def e6axis(target: JointTarget, robot: Robot) -> str:
         raise InputError(
             f"an E6AXIS has {ARM_AXES} arm axes, but the target has {len(target.joints)}"
         )
-    arm = [f"A{k} {number(degrees(q))}" for k, q in enumerate(target.joints, 1)]
+    arm = [f"A{k} {number(v)}" for k, v in enumerate(axis_values(robot, target.joints), 1)]
     return _braced([*arm, *_external(target.external, robot)])
 
 
