@@ -9,6 +9,7 @@ from flyby.core.errors import InputError
 from flyby.core.program.target import Configuration
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
+from flyby.testing.strategies import configurations
 from flyby.vendors.abb.motion.configuration import AbbConfiguration, label
 from flyby.vendors.ur.motion.configuration import UrConfiguration
 
@@ -57,10 +58,7 @@ def test_cfx_numbers_the_eight_postures(q: tuple[float, ...], cfx: int) -> None:
 @given(data=st.data())
 def test_solutions_of_one_pose_have_different_labels(name: str, data: st.DataObject) -> None:
     robot = ABB.robot(name)
-    limits = robot.limits
-    q = np.array(
-        [data.draw(st.floats(a, b)) for a, b in zip(limits.lower, limits.upper, strict=True)]
-    )
+    q = data.draw(configurations(robot, margin=0.0))
     solutions = robot.inverse(robot.flange_pose(q))
     assume(not any(solution.singular for solution in solutions))
     labels = [label(robot, solution.q) for solution in solutions]

@@ -11,6 +11,7 @@ from flyby.core.errors import InputError
 from flyby.core.program.target import Configuration
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
+from flyby.testing.strategies import configurations
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration, label
 from flyby.vendors.ur.motion.configuration import UrConfiguration
 
@@ -59,10 +60,7 @@ def test_status_bit_0_is_the_wrist_behind_axis_1() -> None:
 @given(data=st.data())
 def test_solutions_of_one_pose_have_different_status(name: str, data: st.DataObject) -> None:
     robot = KUKA.robot(name)
-    limits = robot.limits
-    q = np.array(
-        [data.draw(st.floats(a, b)) for a, b in zip(limits.lower, limits.upper, strict=True)]
-    )
+    q = data.draw(configurations(robot, margin=0.0))
     solutions = robot.inverse(robot.flange_pose(q))
     labels = [label(robot, solution.q) for solution in solutions if not solution.singular]
     decided = [found for found in labels if found is not None and not found.undecided_status]
