@@ -20,7 +20,7 @@ from .axis_limits import AxisLimits, acceleration_rule, axis_limits, axis_name
 from .external_axes import external_axes
 from .filters import filters
 from .geometry import AXES, ArmGeometry, frame, geometry
-from .named_arms import APART, FindRobot, apart, called, listed_arm, payload_of_name
+from .named_arms import APART, FindRobot, apart, called, listed_arm, name_alone, payload_of_name
 
 _MODEL, _ARM = "$robcor.dat", "$machine.dat"
 
@@ -38,6 +38,8 @@ def with_machine_data(robot: Robot, file: Path) -> Robot:
     data = _read(file)
     if robot.arm_size != AXES:
         raise InputError(f"{file}: machine data of six axes; {robot.name} has {robot.arm_size}")
+    if _holds_level(robot, data):
+        return _palletiser(robot, data)
     own = geometry(data)
     off = apart(robot, _arm(robot.name, robot.joints, own))
     if off > APART:
@@ -46,16 +48,7 @@ def with_machine_data(robot: Robot, file: Path) -> Robot:
             f"{robot.name}: name the robot that the file is of"
         )
     limits = [axis_limits(data, i) for i in range(1, AXES + 1)]
-    joints = tuple(
-        replace(
-            joint,
-            lower=limit.lower,
-            upper=limit.upper,
-            velocity=limit.velocity,
-            acceleration=limit.acceleration or joint.acceleration,
-        )
-        for joint, limit in zip(robot.joints, limits, strict=True)
-    )
+    joints = tuple(map(_limited, robot.joints, limits))
     return _said(replace(robot, joints=joints), data, limits)
 
 
@@ -109,9 +102,12 @@ def described(
     Raises:
         InputError: what is needed is missing, or the arm is not modelled.
     """
+    if data.flag("$DEF_A4FIX"):
+        named = name_alone(names, find_robot)
+        if named is not None and _holds_level(named, data):
+            return _placed(_palletiser(named, data), data, roots)
     own = geometry(data)
     limits = [axis_limits(data, i) for i in range(1, AXES + 1)]
-    external = external_axes(data, roots)
     payload = rated_load(data, model)
     bare = _arm("kuka/bare", _joints(own, limits), own)
     known, doubts = listed_arm(bare, names, payload, find_robot)
@@ -119,15 +115,51 @@ def described(
         made = _alone(own, limits, names, payload)
     else:
         made = _as_listed(own, limits, known, payload)
-    base = frame(data, "$ROBROOT") if data.has("$ROBROOT") else IDENTITY
     made = replace(
         made,
         origins={**made.origins, "geometry": _published(data)},
+        doubts=(*doubts, *made.doubts),
+    )
+    return _said(_placed(made, data, roots), data, limits)
+
+
+def _placed(robot: Robot, data: DataList, roots: Mapping[str, Pose]) -> Robot:
+    """The arm where the file has it, with the file's external axes."""
+    external = external_axes(data, roots)
+    base = frame(data, "$ROBROOT") if data.has("$ROBROOT") else IDENTITY
+    return replace(
+        robot,
         base=base if external.base is None else external.base,
         external_axes=external.axes,
-        doubts=(*doubts, *made.doubts, *external.doubts),
+        doubts=(*robot.doubts, *external.doubts),
     )
-    return _said(made, data, limits)
+
+
+def _holds_level(robot: Robot, data: DataList) -> bool:
+    """Whether a listed arm is a palletiser, as the file says."""
+    return data.flag("$DEF_A4FIX") and robot.arm_size == AXES and robot.joints[3].held
+
+
+def _palletiser(robot: Robot, data: DataList) -> Robot:
+    """A palletiser with the limits of a file, whose lengths hold for a level flange alone."""
+    limits = {i: axis_limits(data, i) for i in range(1, AXES + 1) if not robot.joints[i - 1].held}
+    joints = tuple(_limited(joint, limits.get(i)) for i, joint in enumerate(robot.joints, 1))
+    doubt = "lengths are those of its type: those of a palletiser's $machine.dat are not read"
+    said = _said(replace(robot, joints=joints), data, list(limits.values()))
+    return replace(said, doubts=(*robot.doubts, doubt))
+
+
+def _limited(joint: Joint, limit: AxisLimits | None) -> Joint:
+    """A joint with the limits of a file; as it is without."""
+    if limit is None:
+        return joint
+    return replace(
+        joint,
+        lower=limit.lower,
+        upper=limit.upper,
+        velocity=limit.velocity,
+        acceleration=limit.acceleration or joint.acceleration,
+    )
 
 
 def rated_load(data: DataList, model: DataList | None) -> float | None:

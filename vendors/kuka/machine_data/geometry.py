@@ -99,7 +99,8 @@ def check_six_axes(data: DataList) -> None:
     if data.flag("$DEF_A4FIX"):
         raise _refused(
             data,
-            "its controller holds A4 at 0 ($DEF_A4FIX), and arms of five axes are not modelled",
+            "its controller holds A4 at 0 ($DEF_A4FIX), and its name is that of no palletiser that "
+            "is known",
         )
     if data.flag("$DEF_A5LINK"):
         raise _refused(data, "its controller links A5 to other axes ($DEF_A5LINK)")

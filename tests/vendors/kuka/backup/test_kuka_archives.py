@@ -187,10 +187,19 @@ def test_damaged_machine_data(tmp_path) -> None:
 
 
 def test_an_arm_that_is_not_modelled(tmp_path) -> None:
-    text = machine_data(KR16, "#KR120R3200 PA C4").replace("$DEF_A4FIX=FALSE", "$DEF_A4FIX=TRUE")
+    text = machine_data(KR16, "#KR470 PA C4").replace("$DEF_A4FIX=FALSE", "$DEF_A4FIX=TRUE")
     (known,) = opened(tmp_path, archive(machine=text)).robots
     assert known.robot is None
-    assert "KR120R3200 PA C4 cannot be driven: its controller holds A4 at 0" in known.lacks[0]
+    assert "KR470 PA C4 cannot be driven: its controller holds A4 at 0" in known.lacks[0]
+
+
+def test_a_palletiser_of_the_catalogue_has_its_own_limits(tmp_path) -> None:
+    text = machine_data(KR16, "#KR120R3200 PA C4").replace("$DEF_A4FIX=FALSE", "$DEF_A4FIX=TRUE")
+    (known,) = opened(tmp_path, archive(machine=text)).robots
+    assert known.robot is not None and known.robot.name == "kuka/kr120-r3200-pa"
+    assert known.robot.joints[3].held
+    assert known.robot.joints[0].upper == pytest.approx(KR16.joints[0].upper)
+    assert any("lengths are those of its type" in doubt for doubt in known.robot.doubts)
 
 
 def test_a_model_file_of_another_arm(tmp_path) -> None:
