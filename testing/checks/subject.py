@@ -167,7 +167,7 @@ class Subject:
         """The program in ``sources``, read from files as a user would.
 
         Of an arm with an axis that slides no text says whether its values are mm or degrees: the
-        reader is told the robot then, and none otherwise.
+        reader gets the robot then, and none otherwise.
         """
         slides = robot is not None and any(j.kind is JointKind.PRISMATIC for j in robot.joints)
         texts = {file: text.encode() for file, text in sources.items()}
