@@ -119,7 +119,7 @@ def test_a_fault_is_found(change: dict[str, Any], check: str) -> None:
     # As it is, the vendor passes them all (tests/vendors/abb/test_conformance_abb.py).
     # Vendor.write itself refuses texts that are read as another program.
     with pytest.raises((AssertionError, KeyError, ExceptionGroup, MotionError)):
-        run(replace(SOUND, **{"robot_motion": {}, **change}), check)
+        run(replace(SOUND, **{"robot_motion": {}, "emulation_only": {}, **change}), check)
 
 
 def test_importing_the_plugins_is_light() -> None:
