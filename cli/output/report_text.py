@@ -112,15 +112,28 @@ def _range(report: Report) -> str:
 
 
 def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:
-    """Print warnings and faults on stderr; faults of a line in a loop in one line."""
+    """Print warnings and faults on stderr.
+
+    Of faults that are alike the first is printed, and how many there are; of those of a line in a
+    loop as well.
+    """
     warn_of(note for note in report.notes if not (note.asked and questions))
     print_questions(questions)
-    alike: dict[tuple[object, str], list[Fault]] = {}
-    for fault in report.faults:
-        alike.setdefault((fault.span or fault.move, fault.message), []).append(fault)
-    for faults in alike.values():
-        times = f" ({len(faults)} times, here first)" if len(faults) > 1 else ""
-        complain_of_fault(f"{faults[0]}{times}")
+    _print_faults(report.faults)
+
+
+def _print_faults(faults: Sequence[Fault]) -> None:
+    alike: dict[str, dict[tuple[object, str], list[Fault]]] = {}
+    for fault in faults:
+        kind = alike.setdefault(re.sub(r"[-\d.]+", "0", fault.message), {})
+        kind.setdefault((fault.span or fault.move, fault.message), []).append(fault)
+    for places in alike.values():
+        lines = [*places.values()]
+        shown = lines if len(lines) <= MOST_ALIKE else lines[:1]
+        for same in shown:
+            times = f" ({len(same)} times, here first)" if len(same) > 1 else ""
+            more = f" (and {len(lines) - 1} like it)" if len(shown) < len(lines) else ""
+            complain_of_fault(f"{same[0]}{times}{more}")
 
 
 def print_questions(questions: Sequence[Question]) -> None:

@@ -23,12 +23,17 @@ from ...robot.joint import JointKind
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.kinematics.tracking import track
 from ...robot.model import Robot
+from ...robot.posture import posture
 from ...spatial.pose import Pose
 
 Label = Callable[[Robot, FloatArray], Configuration | None]
 
 _MATCH = 1e-9
 _SAME = 1e-9
+_TURNED = 2.4
+"""rad by which an axis is taken to turn only where the arm takes another posture."""
+_EDGE = 0.01
+"""m or rad by which a posture differs clearly from its neighbour."""
 _REDUNDANT = 2
 """The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
 
@@ -282,6 +287,31 @@ class ConfigurationFinder:
                 f"configuration {wanted} contradicts the path: the arm arrives with {label}; "
                 "use a joint move, or programme the configuration it arrives with",
                 FaultCause.CONFIGURATION,
+            )
+
+    def check_posture(self, move: Move, found: FloatArray, before: FloatArray) -> None:
+        """Hold a configuration (N,) that is found for the target of a move of the TCP against where
+        the robot was, if the move states none: no line leads to another posture.
+
+        Raises:
+            MotionError: the arm is turned over.
+        """
+        if not isinstance(move.target, PoseTarget) or move.target.configuration is not None:
+            return
+        a, b = posture(self._robot, found), posture(self._robot, before)
+        if a is None or b is None:
+            arm = self._robot.arm_size
+            turned = np.abs(found - before)[:arm].max() > _TURNED
+        else:
+            pairs = zip(a, b, strict=True)
+            turned = any(x * y < 0 and min(abs(x), abs(y)) > _EDGE for x, y in pairs)
+        if turned:
+            raise located(
+                move,
+                0,
+                "within its joint limits the arm reaches the target only turned over, in another "
+                "posture, to which no line leads: use a joint move, or move the target",
+                FaultCause.LIMIT,
             )
 
     def tolerance_notes(self) -> list[Note]:

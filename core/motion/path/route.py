@@ -198,9 +198,12 @@ class RouteFinder:
         if not isinstance(move.target, JointTarget):
             plain = replace(move, target=replace(move.target, configuration=None))
             try:
-                return self._as_target(finder.choose(move, 0, q))
+                found = finder.choose(move, 0, q)
             except MotionError:
-                return self._as_target(finder.choose(plain, 0, q))
+                found = finder.choose(plain, 0, q)
+            if near is not None and not isinstance(move, MoveJ):
+                finder.check_posture(move, found, q)
+            return self._as_target(found)
         try:
             return self._as_target(finder.joints(move.target, q))
         except InputError as error:
