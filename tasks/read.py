@@ -153,6 +153,8 @@ def from_ready_posture(
     """
     if start is not None:
         return read(start)
+    from ..core.source.reading import leads_somewhere
+
     failed: FlybyError | None = None
     without: Program | None = None
     try:
@@ -161,7 +163,8 @@ def from_ready_posture(
         raise
     except FlybyError as error:
         failed = error
-    still = without is not None and _one_place(without)
+    known = without is not None and len(without.moves) > _open(without)
+    still = known and without is not None and not leads_somewhere(without)
     if without is not None and not still and not _open(without):
         return without
     from ..core.program.target import JointTarget
@@ -173,6 +176,7 @@ def from_ready_posture(
         at = JointTarget(posture[: robot.arm_size], posture[robot.arm_size :])
         with suppress(FlybyError):
             program = read(at)
+            program = program if not still or leads_somewhere(program, at) else None
     if program is None or (without is not None and not still and _open(program) >= _open(without)):
         if without is None:
             assert failed is not None
@@ -181,7 +185,7 @@ def from_ready_posture(
     axes = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
     shown = ", ".join(joint.shown(value) for joint, value in zip(axes, posture or (), strict=True))
     why = (
-        "every move goes to one and the same place"
+        "no move leads from one place that is known to another"
         if still
         else "the program asks where the robot stands before its first move"
     )
@@ -189,15 +193,6 @@ def from_ready_posture(
         f"{why}: the robot is taken to stand at {shown} before; {spelt('start')} says where it does"
     )
     return replace(program, notes=(note, *program.notes))
-
-
-def _one_place(program: Program) -> bool:
-    """Whether all moves go to one place, so that a robot that stands there does not move."""
-    from ..core.program.move import MoveC
-
-    if any(move.open or isinstance(move, MoveC) for move in program.moves):
-        return False
-    return len({(m.target, m.tool.tcp, m.work_object.pose) for m in program.moves}) == 1
 
 
 def _open(program: Program) -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
@@ -161,14 +160,28 @@ def _to_known_places(
 
 
 def _is_driven(program: Program, start: JointTarget | None) -> bool:
-    """Whether all moves are known, or one leads from a place that is known to another one."""
-    moves = program.moves
-    if not any(move.open for move in moves):
-        return bool(moves)
-    places = [start, *(None if move.open else move.target for move in moves)]
-    if start is None and not moves[0].open:
-        places[0] = moves[0].target  # the robot is taken to stand there
-    return any(a is not None and b is not None and a != b for a, b in pairwise(places))
+    """Whether all moves are known, or they lead somewhere."""
+    known = bool(program.moves) and not any(move.open for move in program.moves)
+    return known or leads_somewhere(program, start)
+
+
+def leads_somewhere(program: Program, start: JointTarget | None = None) -> bool:
+    """Whether a move leads from a place that is known to another one.
+
+    Args:
+        start: where the robot stands; None for the first target, if that is known.
+    """
+    from ..program.move import MoveC
+
+    at: object = start
+    for number, move in enumerate(program.moves):
+        goes = None if move.open else (move.target, move.tool.tcp, move.work_object.pose)
+        stays = at == goes or (at is start and move.target == start)
+        known = goes is not None and at is not None and not (number == 0 and start is None)
+        if known and (not stays or isinstance(move, MoveC)):
+            return True
+        at = goes
+    return False
 
 
 def _to_an_end(
