@@ -18,6 +18,8 @@ after a pass than before. If it does not get on, the first of these is so:
   way out is carried out. A branch that gives a datum or an output on which the end depends another
   value is a way out, too. A loop that gets on is followed past such a way out, but not for ever
   (`FOLLOWED`).
+- It has not moved the robot, and might if data had other values that something beside the program
+  may write: from now on they are not known.
 - It reads outputs that only others can change: from now on these may have changed.
 - It does not move the robot: it waits for others, and is left, as all waits are satisfied at once;
   what its condition reads has values afterwards that end it, as after a wait.

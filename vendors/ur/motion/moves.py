@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Protocol
 
+from ....core.door import spelt
 from ....core.errors import InputError, LeftOpenError, SourceError, Span
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
 from ....core.program.speed import Speed
@@ -267,14 +268,14 @@ class _MoveReader:
     def _taken(self, what: str, unknown: Unknown, taken: str) -> None:
         self.run.out.notes.count(
             f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken; "
-            "give its value in the answers, [values]",
+            f"answer it in a file ({spelt('answers')}), [values]; `flyby ask` lists its name",
             self.span,
         )
 
     def _refusal(self, what: str, unknown: Unknown, span: Span) -> LeftOpenError:
         return LeftOpenError(
-            f"{what} depends on {unknown.reason}: give its value in the answers, [values], or "
-            "take the move out",
+            f"{what} depends on {unknown.reason}: answer it in a file ({spelt('answers')}), "
+            "[values], where `flyby ask` lists its name, or take the move out",
             span,
         )
 
