@@ -209,3 +209,18 @@ def test_a_neighbouring_quadrant_is_driven_to_with_a_note(abb) -> None:
     np.testing.assert_array_equal(tolerated.path.q, run.path.q)
     told = [note for note in tolerated.notes if "the nearest that controllers take" in note.message]
     assert [note.move for note in told] == [0] and "1 other move" in told[0].message
+
+
+def test_behind_a_fault_no_line_leads_to_another_posture(abb) -> None:
+    from flyby.core.robot.posture import posture
+
+    controller = abb.controller()
+    places = [abb.target(place) for place in PLACES]
+    moves = [MoveL(place, SPEED) for place in (places[0], FAR, places[1], places[2], places[0])]
+    driven = drive(controller, Program(tuple(moves), start=abb.start))
+    signs = {
+        tuple(np.sign(posture(abb.robot, q)))
+        for part in driven.parts
+        for q in part.run.path.q[:: len(part.run.path.q) // 5]
+    }
+    assert len(driven.faults) == 1 and len(driven.parts) == 2 and len(signs) == 1

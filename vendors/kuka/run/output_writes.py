@@ -14,7 +14,7 @@ from ..syntax.statements import parse_statement
 from ..syntax.tree import Assign, Block, Call, Declaration, Name, Statement
 from ..values.data import Data
 from ..values.elements import Names
-from ..values.predefined import MOTION, OUTPUTS
+from ..values.predefined import MOTION, OUTPUTS, POSITION
 from ..values.scope import Scope
 from .analysis import KrlTree
 
@@ -77,6 +77,7 @@ class OutputWrites:
                 cell = self._data.find(name, where) or self._data.implicit(datum)
                 if not cell.constant and cell.signal is None:
                     cell.writer, cell.awaited = writer, False
+                    cell.found = _places_in(part).get(name)
 
     # -------------------------------------------------------------------- inside
 
@@ -108,3 +109,15 @@ def _statements(text: str) -> tuple[Statement, ...] | None:
         return parse_statement(Cursor(tokenize(source)))
     except SourceError:
         return None
+
+
+def _places_in(block: Block) -> dict[str, str]:
+    """The data that are given the place where the robot is, and how: ``pose`` or ``axes``."""
+    return {
+        s.target.name: POSITION[s.value.name]
+        for s in block.statements
+        if isinstance(s, Assign)
+        and isinstance(s.value, Name)
+        and s.value.name in POSITION
+        and not (s.target.path or s.value.path)
+    }

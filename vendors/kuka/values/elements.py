@@ -126,6 +126,8 @@ class Names:
             if value is None or isinstance(value, Unknown):
                 break
             value = self.part(value, step, node, cell)
+        if is_open(cell) and cell.found is not None and not path:
+            value = self._found(node, cell.found) or value
         if is_open(cell):
             open_ = self._undeclared(node, path, f", which {cell.writer} writes")
             return replace(open_, held=value) if isinstance(open_, Unknown) else open_
@@ -156,6 +158,11 @@ class Names:
             node.span,
         )
         return shipped
+
+    def _found(self, node: Name, kind: str) -> Value | None:
+        """Where a search finds what it looks for: at its end, as the robot drives here."""
+        value = self.position(kind, node.span)
+        return None if isinstance(value, Unknown) else value
 
     def _of_position(self, node: Name, scope: Scope, kind: str) -> Value:
         path = self.path(node, scope)

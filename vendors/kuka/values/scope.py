@@ -20,6 +20,7 @@ class Variable:
         signal: what a ``SIGNAL`` stands for: one system variable, or the first and last of several.
         shipped: it stands in the configuration that comes with this package.
         assigned: the program has assigned to it.
+        found: how an interrupt's routine puts down in it where the robot is: ``pose`` or ``axes``.
         writer, awaited: see `core.source.execution.suppose.SharedDatum`.
     """
 
@@ -30,6 +31,7 @@ class Variable:
     signal: tuple[Name, Name | None] | None = None
     shipped: bool = False
     assigned: bool = False
+    found: str | None = None
     writer: str | None = None
     awaited: bool = False
 
