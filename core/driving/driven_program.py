@@ -51,6 +51,9 @@ def refusal(faults: Sequence[Fault]) -> MotionError:
         more = [f"and {len(rest) - _NAMED} more"] if len(rest) > _NAMED else []
         message += f". {counted(rest, 'further move')} cannot be driven: "
         message += "; ".join([*named, *more])
+        other = next((fault for fault in rest if fault.cause is not first.cause), None)
+        if other is not None:
+            message += f". Move {other.move + 1}: {other.message}"
     return MotionError(message, first.move, first.span, first.cause)
 
 

@@ -130,7 +130,7 @@ def test_motion_that_is_made_at_run_time_is_kept_by_name(call: str, reason: str)
 @pytest.mark.parametrize("before", ["", "movej([0,0,0,0,0,0])\n"])
 def test_a_program_of_streams_says_so(before: str) -> None:
     message = refusal(f"{before}while True:\n  servoj([0,0,0,0,0,0], t=0.002)\nend")
-    assert "servoj drives the robot by what is only known at run time" in message
+    assert "servoj drives the robot in steps of a control loop" in message
 
 
 # ------------------------------------------------------------------------ targets
