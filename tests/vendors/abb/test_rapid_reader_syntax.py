@@ -108,6 +108,7 @@ def test_compact_if_holds_one_statement():
         ("MODULE M\nCONST pos p:=[1,2;\nENDMODULE", (2, 18), "']'"),
         ("MODULE M\nCONST num a:=1E999;\nENDMODULE", (2, 14), "too large"),
         ("MODULE M\n\x00\x01\nENDMODULE", (2, 1), "binary"),
+        ("PROC Path_10()\nENDPROC\n", (1, 1), "this is a part of a module"),
     ],
 )
 def test_errors_say_where_and_what(text, place, words):

@@ -28,6 +28,8 @@ from .tree import (
 STORAGE = ("const", "var", "pers")
 HANDLERS = ("error", "undo", "backward")
 ROUTINES = ("proc", "func", "trap")
+_PARTS = (*STORAGE, *ROUTINES, "local", "task", "record", "alias")
+"""Words that begin what stands in a module."""
 
 
 def parse(source: SourceText) -> tuple[Module, ...]:
@@ -47,6 +49,12 @@ def parse(source: SourceText) -> tuple[Module, ...]:
 
 def _module(cursor: Cursor) -> Module:
     start = cursor.start
+    if cursor.kind in _PARTS:
+        raise cursor.source.error(
+            "this is a part of a module, which begins with MODULE and its name: put MODULE Part "
+            "before it and ENDMODULE behind it",
+            start,
+        )
     cursor.expect("module", "at the beginning of the file")
     text = cursor.name("the module's name")
     attributes = _attributes(cursor)
