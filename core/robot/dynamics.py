@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
 from ..arrays import FloatArray
 from ..spatial.pose import Pose, Vector3
@@ -53,6 +52,9 @@ class Dynamics:
     """
 
     def __init__(self, tree: JointTree) -> None:
+        import pinocchio as pin  # takes a tenth of a second; most runs need no torques
+
+        self._pin = pin
         self._model = _pinocchio_model(tree)
         self._data = self._model.createData()
         self._pool = pin.ModelPool(self._model, 1)
@@ -74,7 +76,7 @@ class Dynamics:
         columns = [np.ascontiguousarray(x[:, self._order]).T for x in (q, dq, ddq)]
         torques = np.empty_like(q)
         if len(q):
-            found = np.asarray(pin.rneaInParallel(1, self._pool, *columns))
+            found = np.asarray(self._pin.rneaInParallel(1, self._pool, *columns))
             # Pinocchio drops the axis of a single joint.
             torques[:] = found.reshape(len(self._order), -1).T @ self._drives
         torques[:, self._unknown] = np.nan
@@ -89,7 +91,7 @@ class Dynamics:
         parts = np.empty((3, count, nodes, nodes))
         rows = zip(*(np.ascontiguousarray(x[:, self._order]) for x in (q, dq, ddq)), strict=True)
         for m, (at, rate, rise) in enumerate(rows):
-            derivatives = pin.computeRNEADerivatives(self._model, self._data, at, rate, rise)
+            derivatives = self._pin.computeRNEADerivatives(self._model, self._data, at, rate, rise)
             parts[0, m], parts[1, m], parts[2, m] = derivatives[:3]
         parts = self._drives.T @ parts @ self._drives
         parts[:, :, self._unknown] = np.nan
@@ -111,6 +113,8 @@ def _cached(tree: JointTree) -> Dynamics:
 
 
 def _pinocchio_model(tree: JointTree) -> Any:
+    import pinocchio as pin
+
     model = pin.Model()
     model.name = tree.name
     model.gravity.linear = np.array(tree.gravity)
@@ -150,6 +154,8 @@ def _bodies(tree: JointTree) -> TreeBodies:
 
 
 def _joint_model(joint: Joint | Follower) -> Any:
+    import pinocchio as pin
+
     axis = np.array(joint.axis) / np.linalg.norm(joint.axis)
     if joint.kind is JointKind.PRISMATIC:
         return pin.JointModelPrismaticUnaligned(axis)

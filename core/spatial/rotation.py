@@ -38,26 +38,25 @@ def quaternion_from_matrix(matrix: FloatArray) -> FloatArray:
 @njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
 def _quaternions(matrices: FloatArray, quaternions: FloatArray) -> None:
     for k in range(len(matrices)):
-        m, q = matrices[k], quaternions[k]
-        trace = m[0, 0] + m[1, 1] + m[2, 2]
-        i = 0
-        for axis in range(1, 3):
-            if m[axis, axis] > m[i, i]:
-                i = axis
-        if trace >= m[i, i]:
-            q[0] = 1 + trace
-            q[1], q[2], q[3] = m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]
+        a, b, c = matrices[k, 0, 0], matrices[k, 1, 1], matrices[k, 2, 2]
+        trace = a + b + c
+        x = matrices[k, 2, 1] - matrices[k, 1, 2]
+        y = matrices[k, 0, 2] - matrices[k, 2, 0]
+        z = matrices[k, 1, 0] - matrices[k, 0, 1]
+        u = matrices[k, 2, 1] + matrices[k, 1, 2]
+        v = matrices[k, 0, 2] + matrices[k, 2, 0]
+        w = matrices[k, 1, 0] + matrices[k, 0, 1]
+        if trace >= a and trace >= b and trace >= c:
+            h, x, y, z = 1 + trace, x, y, z
+        elif a >= b and a >= c:
+            h, x, y, z = x, 1 + 2 * a - trace, w, v
+        elif b >= c:
+            h, x, y, z = y, w, 1 + 2 * b - trace, u
         else:
-            j, n = (i + 1) % 3, (i + 2) % 3
-            q[0] = m[n, j] - m[j, n]
-            q[1 + i] = 1 + 2 * m[i, i] - trace
-            q[1 + j], q[1 + n] = m[j, i] + m[i, j], m[n, i] + m[i, n]
-        square = 0.0
-        for axis in range(4):
-            square += q[axis] ** 2
-        scale = math.copysign(1.0 / math.sqrt(square), q[0])
-        for axis in range(4):
-            q[axis] *= scale
+            h, x, y, z = z, v, u, 1 + 2 * c - trace
+        scale = math.copysign(1.0 / math.sqrt(h * h + x * x + y * y + z * z), h)
+        quaternions[k, 0], quaternions[k, 1] = scale * h, scale * x
+        quaternions[k, 2], quaternions[k, 3] = scale * y, scale * z
 
 
 def rotation_vector(matrix: FloatArray) -> FloatArray:

@@ -19,15 +19,19 @@ from numba.extending import register_jitable
 
 from ...numba_version import LINKED
 
+_PLAIN = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+
 
 def lean(function: Any) -> Any:
     """Compiles a function that makes no array: where it would, numba refuses to compile it."""
-    plain = {"cache": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
     if numba.version_info.short != LINKED:
-        return njit(**plain)(function)
-    from .linked import LeanCompiler
+        return njit(**_PLAIN, cache=True)(function)
+    from .linked import LeanCompiler, LeanDispatcher
 
-    return njit(**plain, pipeline_class=LeanCompiler)(function)
+    options = {**_PLAIN, "nopython": True}
+    made = LeanDispatcher(function, targetoptions=options, pipeline_class=LeanCompiler)
+    made.enable_caching()
+    return made
 
 
 def inner(function: Any) -> Any:
@@ -35,12 +39,11 @@ def inner(function: Any) -> Any:
 
     It has no machine code of its own: called from Python, it runs as it is written.
     """
-    plain = {"error_model": "numpy", "_nrt": False}
     if numba.version_info.short != LINKED:
-        return register_jitable(**plain)(function)
+        return register_jitable(error_model="numpy", _nrt=False)(function)
     from .linked import LinkedCompiler
 
     # With the flags of `lean`: numba compiles anew for each caller that has others.
-    return register_jitable(
-        **plain, no_cfunc_wrapper=True, no_cpython_wrapper=False, pipeline_class=LinkedCompiler
-    )(function)
+    return register_jitable(**_PLAIN, no_cpython_wrapper=False, pipeline_class=LinkedCompiler)(
+        function
+    )

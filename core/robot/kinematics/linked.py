@@ -6,56 +6,135 @@ one only.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from functools import cached_property
 from typing import Any
 
-from numba import _dynfunc
+from numba import _dynfunc, types
+from numba.core.cgutils import if_unlikely
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
-from numba.core.compiler_machinery import LoweringPass, register_pass
-from numba.core.typed_passes import AnnotateTypes, NativeLowering
+from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
+from numba.core.registry import CPUDispatcher
+from numba.core.typed_passes import (
+    AnnotateTypes,
+    IRLegalization,
+    NoPythonBackend,
+    PreLowerStripPhis,
+)
+from numba.core.untyped_passes import (
+    FixupArgs,
+    GenericRewrites,
+    IRProcessing,
+    ReconstructSSA,
+    TranslateByteCode,
+)
+
+from .lean_lowering import InnerLowering, LeanLowering, WholeCalls
+from .lean_typing import LeanTyping
 
 
-class _Intermediate(JITCodeLibrary):  # type: ignore[misc]
-    """Code that is optimised and made into machine code in its callers only."""
+class _Unoptimised(JITCodeLibrary):  # type: ignore[misc]
+    """Code whose functions are not optimised one by one, before they are put together."""
 
     def _optimize_functions(self, module: Any) -> None:
         module.data_layout = self._codegen._data_layout
 
-    def _optimize_final_module(self) -> None:
-        pass
 
-    def _finalize_final_module(self) -> None:
+class _Intermediate(_Unoptimised):
+    """Code that is optimised and made into machine code in its callers only.
+
+    What it calls is not put into it: machine code is made of all that it needs, once.
+    """
+
+    _shared_module: Any
+
+    def finalize(self) -> None:
+        """Nothing can be added any more."""
         self._finalize_dynamic_globals()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage.name == "external":
+                function.linkage = "linkonce_odr"
         self._finalized = True
 
+    def _get_module_for_linking(self) -> Any:
+        """With all that it needs, for kernels that are no `_Once`."""
+        if self._shared_module is None:
+            self._shared_module = self._final_module.clone()
+            _link(self._shared_module, _needed(self))
+        return self._shared_module
 
-class _Once(JITCodeLibrary):  # type: ignore[misc]
+
+class _Once(_Unoptimised):
     """Code that is optimised once.
 
     numba does so twice, to prune counts of references in between, of which there are none here.
     """
+
+    def finalize(self) -> None:
+        """Put together what it needs, and make machine code."""
+        needed = _needed(self)
+        for library in needed:
+            self._reload_init.update(library._reload_init)
+        _link(self._final_module, needed)
+        self._linking_libraries: list[Any] = []
+        super().finalize()
 
     def _optimize_final_module(self) -> None:
         passes, builder = self._codegen._module_pass_manager()
         passes.run(self._final_module, builder)
 
 
-class LeanCompiler(Compiler):  # type: ignore[misc]
-    """Compiles kernels that Python calls and that count no references."""
+def _needed(library: Any) -> dict[Any, None]:
+    """All that code calls, and what that calls."""
+    found: dict[Any, None] = {}
+    ahead = list(reversed(library._linking_libraries))
+    while ahead:
+        one = ahead.pop()
+        if one not in found:
+            found[one] = None
+            if isinstance(one, _Intermediate):
+                ahead += reversed(one._linking_libraries)
+    return found
 
-    def __init__(
-        self,
-        typingctx: Any,
-        targetctx: Any,
-        library: Any,
-        args: Any,
-        return_type: Any,
-        flags: Any,
-        locals: Any,
-    ) -> None:
-        library = _Once(targetctx.codegen(), "lean")
-        library.enable_object_caching()
-        super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
+
+def _link(module: Any, needed: Iterable[Any]) -> None:
+    """Put code together.
+
+    A function is taken over when something calls it. Where one of the same name stands already that
+    calls nothing, as what it called is part of it, a function may be called only later.
+    """
+    parts = [
+        one._final_module if isinstance(one, _Intermediate) else one._get_module_for_linking()
+        for one in needed
+    ]
+    while parts:
+        for part in parts:
+            module.link_in(part, preserve=True)
+        missing = {one.name for one in module.functions if one.is_declaration}
+        late = [
+            part
+            for part in parts
+            if any(one.name in missing for one in part.functions if not one.is_declaration)
+        ]
+        parts = late if len(late) < len(parts) else []
+
+
+def _called(described: Any, library: Any) -> Any:
+    """What numba wants to know of a function that can be called."""
+
+    def call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        calls = WholeCalls(context)
+        function = calls.declare(builder.module, described)
+        status, found = calls.call_function(
+            builder, function, described.restype, described.argtypes, args
+        )
+        with if_unlikely(builder, status.is_error):
+            context.call_conv.return_status_propagate(builder, status)
+        return found
+
+    call.signature, call.libs = described.argtypes, (library,)  # type: ignore[attr-defined]
+    return call
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
@@ -73,7 +152,8 @@ class _Linkable(LoweringPass):  # type: ignore[misc]
         key = _dynfunc.make_function(
             found.fndesc.lookup_module(), name, "inner", 0, found.env, (state.library,)
         )
-        state.targetctx.insert_user_function(key, found.fndesc, [state.library])
+        called = _called(found.fndesc, state.library)
+        state.targetctx._defns[key].append(called, found.fndesc.argtypes)
         state["cr"] = found._replace(cfunc=key)
         return True
 
@@ -96,8 +176,11 @@ class _Unwrapped(LoweringPass):  # type: ignore[misc]
         return True
 
 
-class LinkedCompiler(Compiler):  # type: ignore[misc]
-    """Compiles as far as callers need it: to code that can be linked."""
+class _Compiler(Compiler):  # type: ignore[misc]
+    """Compiles functions that make no array, and so hold nothing that has to be rewritten."""
+
+    library: type[JITCodeLibrary]
+    last: tuple[Any, ...]
 
     def __init__(
         self,
@@ -109,13 +192,53 @@ class LinkedCompiler(Compiler):  # type: ignore[misc]
         flags: Any,
         locals: Any,
     ) -> None:
-        library = _Intermediate(targetctx.codegen(), "inner")
+        library = self.library(targetctx.codegen(), "lean")
+        library.enable_object_caching()
         super().__init__(typingctx, targetctx, library, args, return_type, flags, locals)
 
     def define_pipelines(self) -> Any:
-        made = super().define_pipelines()
-        for passes in made:
-            passes.add_pass_after(_Unwrapped, AnnotateTypes)
-            passes.add_pass_after(_Linkable, NativeLowering)
-            passes.finalize()
-        return made
+        passes = PassManager("lean")
+        # Else each is followed by a look at which variables live where.
+        passes._ENFORCING = False
+        for one in (
+            TranslateByteCode,
+            FixupArgs,
+            IRProcessing,
+            GenericRewrites,
+            ReconstructSSA,
+            LeanTyping,
+            PreLowerStripPhis,
+            IRLegalization,
+            AnnotateTypes,
+            *self.last,
+        ):
+            passes.add_pass(one, one._name)
+        passes.finalize()
+        return [passes]
+
+
+class LeanCompiler(_Compiler):
+    """Compiles kernels that Python calls and that count no references."""
+
+    library = _Once
+    last = (LeanLowering, NoPythonBackend)
+
+
+class LeanDispatcher(CPUDispatcher):  # type: ignore[misc]
+    """A kernel that Python calls; where kernels call it, it is compiled into them alone."""
+
+    @cached_property
+    def _within(self) -> Any:
+        options = {**self.targetoptions, "no_cpython_wrapper": False}
+        return CPUDispatcher(self.py_func, targetoptions=options, pipeline_class=LinkedCompiler)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return types.Dispatcher(self._within)
+
+
+class LinkedCompiler(_Compiler):
+    """Compiles as far as callers need it: to code that can be linked."""
+
+    library = _Intermediate
+    last = (_Unwrapped, InnerLowering, _Linkable, NoPythonBackend)

@@ -1,0 +1,72 @@
+"""Types of what kernels compute, asked of numba once for each operation and not at each place.
+
+For each `a * b` numba tries what it knows of multiplication, one after the other, until one takes
+the types of a and b, and does so again each time that something becomes known of the function.
+
+It builds on the inside of one version of numba; see `linked`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from numba import types
+from numba.core.compiler_machinery import register_pass
+from numba.core.typed_passes import BaseTypeInference
+
+_known: dict[tuple[Any, ...], tuple[Any, Any]] = {}
+"""What was found, by what was asked for; with the types asked for, which thereby live on."""
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class LeanTyping(BaseTypeInference):  # type: ignore[misc]
+    """numba's inference of types."""
+
+    _name = "flyby_typing"
+
+    def run_pass(self, state: Any) -> bool:
+        """Find the types of a kernel's variables."""
+        with _remembering(state.typingctx):
+            return bool(super().run_pass(state))
+
+
+@contextmanager
+def _remembering(context: Any) -> Iterator[None]:
+    """While a kernel is typed, and those that it calls."""
+    if "resolve_function_type" in vars(context):
+        yield
+        return
+    call, attribute, store = (
+        context.resolve_function_type,
+        context.resolve_getattr,
+        context.resolve_setitem,
+    )
+
+    def resolve_function_type(function: Any, args: Any, keywords: Any) -> Any:
+        if keywords or not isinstance(function, types.Function | str):
+            return call(function, args, keywords)
+        return _recall(call, (function, *args), function, args, keywords)
+
+    context.resolve_function_type = resolve_function_type
+    context.resolve_getattr = lambda held, name: _recall(attribute, (held, name), held, name)
+    context.resolve_setitem = lambda *args: _recall(store, args, *args)
+    try:
+        yield
+    finally:
+        del context.resolve_function_type, context.resolve_getattr, context.resolve_setitem
+
+
+def _recall(find: Callable[..., Any], asked: tuple[Any, ...], *args: Any) -> Any:
+    # Types are one object each; their own comparison goes through all that they are made of.
+    key = (find.__name__, *(id(one) if isinstance(one, types.Type) else (one,) for one in asked))
+    try:
+        known = _known.get(key)
+    except TypeError:  # slices cannot be looked up
+        return find(*args)
+    if known is None:
+        known = find(*args), asked
+        if known[0] is not None:
+            _known[key] = known
+    return known[0]

@@ -1,0 +1,133 @@
+"""What kernels compute is what they compute as they are written."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numba import njit
+
+from flyby.core.arrays import FloatArray, IntArray
+from flyby.core.robot.kinematics.lean import inner, lean
+
+
+class _Sheet(NamedTuple):
+    """Arrays in a tuple in a tuple."""
+
+    values: FloatArray
+    counts: IntArray
+
+
+class _Book(NamedTuple):
+    left: _Sheet
+    right: _Sheet
+    chosen: np.ndarray
+
+
+@inner
+def _doubled(x: float) -> float:
+    return 2.0 * x
+
+
+@inner
+def _taken(sheet: _Sheet, i: int, j: int) -> float:
+    """One element; indices may count from the end."""
+    return sheet.values[i, j] + sheet.counts[j]
+
+
+@inner
+def _noted(sheet: _Sheet, i: int, j: int, value: float) -> None:
+    sheet.values[i, j] = value
+    sheet.counts[j] += 1
+
+
+@inner
+def _turned(book: _Book) -> _Book:
+    return _Book(book.right, book.left, book.chosen)
+
+
+@lean
+def _worked(book: _Book, at: IntArray, cube: FloatArray) -> tuple[float, float, int]:
+    """Variables that change in loops, tuples made anew, elements of all kinds."""
+    total, last, seen = 0.0, -1.0, 0
+    own = book
+    for k in range(at.size):
+        i, j = at[k], at[-1 - k]
+        if book.chosen[k]:
+            own = _turned(own)
+            seen += 1
+        sheet = own.left if i < j else own.right
+        value = _taken(sheet, i, j)
+        if value > 1.0:
+            value = _doubled(value) - 1
+            last = value
+        _noted(sheet, j, i, value)
+        total += value + cube[i, -1, j] * book.left.values[0, 0]
+        cube[i, 1, j] = total
+        row = own.right.values[i]
+        row[j] = 0.5 * row[j] + own.left.values.shape[1]
+    return total, last, seen
+
+
+def _made(numbers: FloatArray, counts: IntArray, chosen: np.ndarray) -> tuple[_Book, FloatArray]:
+    left = _Sheet(numbers[0].copy(), counts[0].copy())
+    right = _Sheet(numbers[1].copy(), counts[1].copy())
+    return _Book(left, right, chosen), numbers.copy()
+
+
+_NUMBERS = arrays(float, (3, 3, 3), elements=st.floats(-2, 2, width=32))
+_COUNTS = arrays(np.int64, (2, 3), elements=st.integers(-3, 3))
+
+
+@settings(deadline=None)
+@given(_NUMBERS, _COUNTS, st.data())
+def test_kernels_compute_what_is_written(numbers, counts, data) -> None:
+    size = data.draw(st.integers(1, 6))
+    chosen = data.draw(arrays(bool, size))
+    at = data.draw(arrays(np.int64, size, elements=st.integers(-3, 2)))
+    made = [_made(numbers, counts, chosen) for _ in range(2)]
+    found = _worked(made[0][0], at, made[0][1])
+    with np.errstate(over="ignore"):
+        expected = _worked.py_func(made[1][0], at, made[1][1])
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+    for side in range(2):
+        for own, other in zip(made[0][0][side], made[1][0][side], strict=True):
+            np.testing.assert_allclose(own, other, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(made[0][1], made[1][1], rtol=1e-12, atol=1e-12)
+
+
+@inner
+def _deep(x: FloatArray) -> float:
+    return _doubled(x[0]) + _doubled(x[-1])
+
+
+@inner
+def _other(x: FloatArray) -> float:
+    return _doubled(x[0]) * _deep(x)
+
+
+@njit(error_model="numpy")
+def _finished(x: FloatArray) -> float:
+    return _deep(x) + x.copy()[0]
+
+
+@njit(error_model="numpy")
+def _mixed(x: FloatArray) -> float:
+    y = x.copy()
+    return _finished(y) + _other(y) + _worked_once(y)
+
+
+@lean
+def _worked_once(x: FloatArray) -> float:
+    return _other(x) - _deep(x)
+
+
+def test_kernels_that_make_arrays_call_others_and_what_those_have_taken_in() -> None:
+    """Where one of them stands already that has taken in what it calls, the rest finds it."""
+    x = np.array([1.0, 2.0, 3.0])
+    deep, other = 8.0, 16.0
+    assert _mixed(x) == deep + 1.0 + other + other - deep
+    assert _worked_once(x) == other - deep
