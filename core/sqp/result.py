@@ -48,7 +48,7 @@ class Iteration:
         step: largest change of a variable in the step that led here.
         step_length: share of the subproblem's step that was taken.
         shift: the most by which an entry of the Hessian's diagonal was raised, to make it convex.
-        kind: of step: ``normal``, ``corrected`` (second order), ``elastic``, ``restoration``,
+        kind: of step: ``normal``, ``active_set`` (the last digits of an interior point), ``corrected`` (second order), ``elastic``, ``restoration``,
             ``descent`` (the steepest, where no model's step helped).
     """
 
@@ -100,6 +100,7 @@ class Result:
         evaluations: calls of each callable.
         timings: where the time went.
         backend: the QP back end that solved the last subproblem.
+        method: ``interior_point``, ``sqp``, or both in turn.
         workspace: what a warm start reuses; it stays behind where a result is copied or pickled.
     """
 
@@ -115,6 +116,7 @@ class Result:
     evaluations: dict[str, int] = field(repr=False)
     timings: Timings = field(repr=False)
     backend: str = ""
+    method: str = ""
     workspace: Workspace | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, object]:

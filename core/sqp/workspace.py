@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from threading import Lock
 
+from .algebra.linear import SaddlePatterns
 from .algebra.matrices import Sparsity, identity
-from .convexify import Convexifier
-from .elastic import Elastic
+from .sequential.convexify import Convexifier
+from .sequential.elastic import Elastic
 from .problem.nlp import NLP
 from .problem.patterns import Pattern
 from .qp.problem import Backend
@@ -27,6 +28,7 @@ class Workspace:
         subproblems: the back ends, set up.
         elastic: elastic subproblems.
         identity: pattern of a diagonal (n, n).
+        saddles: symbolic factorisations of the interior point.
         busy: is held while a solution uses it.
     """
 
@@ -37,6 +39,7 @@ class Workspace:
     subproblems: Subproblems
     elastic: Elastic
     identity: Sparsity
+    saddles: SaddlePatterns = field(default_factory=SaddlePatterns)
     busy: Lock = field(default_factory=Lock)
 
 

@@ -12,10 +12,10 @@ from . import dense
 from .ldl import Factors, Ldl, factorise, substitute
 from .matrices import SparseMatrix, Sparsity
 
-_REGULARISATION = 1e-9
+_REGULARISATION = 1e-8
 _REFINEMENTS = 4
 _EXACT = 1e-13
-_KEPT = 3
+_KEPT = 5
 
 
 class Definiteness:
@@ -105,10 +105,13 @@ class Saddle:
 
     Rows and variables that do not take part are switched off in place, so that the pattern, and
     with it the symbolic factorisation, stays.
+
+    Args:
+        patterns: keeps symbolic factorisations, others' too; None for its own.
     """
 
-    def __init__(self) -> None:
-        self._patterns = SaddlePatterns()
+    def __init__(self, patterns: SaddlePatterns | None = None) -> None:
+        self._patterns = patterns or SaddlePatterns()
 
     def solve(
         self,
@@ -138,7 +141,7 @@ class Saddle:
         if dense.is_dense(P.pattern):
             return dense.saddle(P, q, A, rows, target, fixed, values)
         pattern = self._patterns.of(P.pattern, A.pattern)
-        matrices = _Matrices(
+        matrices = SaddleMatrices(
             P.pattern.starts,
             P.pattern.rows,
             P.data.copy(),
@@ -154,8 +157,8 @@ class Saddle:
         return (found[:n], found[n:]) if solved else None
 
 
-class _Matrices(NamedTuple):
-    """P and A by columns."""
+class SaddleMatrices(NamedTuple):
+    """P (n, n), both triangles, and A (m, n) by columns."""
 
     P_starts: IntArray
     P_rows: IntArray
@@ -167,7 +170,7 @@ class _Matrices(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def _solve(
-    matrices: _Matrices,
+    matrices: SaddleMatrices,
     factors: Factors,
     places: EntryIndices,
     right: FloatArray,
@@ -208,12 +211,12 @@ def _solve(
         data[places.A[k]] = matrices.A[k]
     if factorise(factors, data) < 0:
         return False
-    return bool(_refined(matrices, factors, exact, right, found))
+    return refined(matrices, factors, exact, right, found, _EXACT) < np.inf
 
 
 @njit(cache=True, error_model="numpy")
 def _switch_off(
-    matrices: _Matrices, right: FloatArray, active: BoolArray, values: FloatArray
+    matrices: SaddleMatrices, right: FloatArray, active: BoolArray, values: FloatArray
 ) -> None:
     """Take what is not active out of the matrices; q and targets become the right side."""
     n = len(values)
@@ -237,22 +240,40 @@ def _switch_off(
 
 
 @njit(cache=True, error_model="numpy")
-def _refined(
-    matrices: _Matrices, factors: Factors, exact: FloatArray, right: FloatArray, found: FloatArray
-) -> bool:
-    """The solution of the exact system by those of the shifted one; False if it is not finite."""
+def refined(
+    matrices: SaddleMatrices,
+    factors: Factors,
+    exact: FloatArray,
+    right: FloatArray,
+    found: FloatArray,
+    share: float,
+) -> float:
+    """The solution of the exact system by those of the shifted one.
+
+    Args:
+        matrices: of the exact one.
+        factors: of the shifted one.
+        exact: (n + m,) its diagonal but for P's own.
+        right: (n + m,).
+        found: (n + m,) the solution is written there.
+        share: of the right side's size, but at least of one, that may be left.
+
+    Returns:
+        The share that is left; infinite where there is no finite solution.
+    """
     if not len(right):
-        return True
+        return 0.0
     work, better = np.empty_like(right), np.empty_like(right)
     left, step = np.empty_like(right), np.empty_like(right)
-    enough = _EXACT * max(1.0, np.abs(right).max())
+    size_right = max(1.0, np.abs(right).max())
+    enough = share * size_right
     substitute(factors, right, better, work)
     before = np.inf
     for count in range(_REFINEMENTS + 1):
         _left(matrices, exact, right, better, left)
         size = np.abs(left).max()
         if count == 0 and not np.isfinite(size):
-            return False
+            return np.inf
         if not size < before:
             break
         found[:] = better
@@ -261,12 +282,12 @@ def _refined(
             break
         substitute(factors, left, step, work)
         better += step
-    return bool(np.isfinite(found).all())
+    return before / size_right if np.isfinite(found).all() else np.inf
 
 
 @njit(cache=True, error_model="numpy")
 def _left(
-    matrices: _Matrices, exact: FloatArray, right: FloatArray, found: FloatArray, left: FloatArray
+    matrices: SaddleMatrices, exact: FloatArray, right: FloatArray, found: FloatArray, left: FloatArray
 ) -> None:
     """What is left of the right side, written to ``left``."""
     n = len(matrices.P_starts) - 1

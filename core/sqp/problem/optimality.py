@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
-from ...arrays import BoolArray, FloatArray
+from ...arrays import BoolArray, FloatArray, IntArray
 from ..algebra.matrices import SparseMatrix
-from . import violation
 
 _ON_BOUND = 1e-8
 _ROUNDING = 1e-14
@@ -60,48 +60,98 @@ def slope_terms(g: FloatArray, J: SparseMatrix, multipliers: FloatArray) -> Floa
     return size + J.absolute().transposed_times(np.abs(multipliers)) if len(multipliers) else size
 
 
-def row_terms(x: FloatArray, c: FloatArray, J: SparseMatrix) -> FloatArray:
-    """|c| + |J||x| (m,): about the size of what the constraints are sums of."""
-    return np.abs(c) + J.absolute() @ np.abs(x) if len(c) else np.abs(c)
-
-
 def residuals(
     x: FloatArray,
     c: FloatArray,
-    slope: FloatArray,
-    terms: FloatArray,
-    row_terms: FloatArray,
+    g: FloatArray,
+    J: SparseMatrix,
     multipliers: FloatArray,
     bounds: Bounds,
+    factors: tuple[float, FloatArray],
 ) -> OptimalityResiduals:
     """Residuals at x, all in the user's scale; multipliers of bounds follow from stationarity.
 
     Args:
         x: (n,).
-        c: (m,).
-        slope: (n,) `lagrangian_slope`.
-        terms: (n,) `slope_terms`.
-        row_terms: (m,) `row_terms`.
-        multipliers: (m,).
-        bounds: x_lower, x_upper, c_lower, c_upper.
+        c: (m,) scaled, as are g (n,), J (m, n) and the multipliers (m,).
+        bounds: x_lower, x_upper, c_lower, c_upper, unscaled.
+        factors: of the objective and of the rows (m,): scaled over unscaled.
     """
     x_lower, x_upper, c_lower, c_upper = bounds
-    nu = bound_multipliers(x, slope, x_lower, x_upper)
-    left = np.abs(slope + nu)
-    pressed_x = np.abs(nu) * np.where(nu == 0.0, 0.0, np.where(nu > 0, x_upper - x, x - x_lower))
-    gap = np.where(multipliers > 0, np.abs(c_upper - c), np.abs(c - c_lower))
-    # A distance beyond 1 counts as 1: a multiplier without a bound, or far from it, counts itself.
-    pressed_c = np.abs(multipliers) * np.minimum(gap, 1.0)
-    outside = np.maximum(np.maximum(c_lower - c, c - c_upper), 0.0)
-    parts = ((left, terms), (pressed_x, np.abs(nu)), (pressed_c, np.abs(multipliers)))
-    return OptimalityResiduals(
-        _largest(left),
-        max(_largest(pressed_x), _largest(pressed_c)),
-        max(violation.largest(x, x_lower, x_upper), violation.largest(c, c_lower, c_upper)),
-        max(_largest(part / np.maximum(1.0, size)) for part, size in parts),
-        bool((outside <= _ROUNDING * row_terms).all()),
-        nu,
+    factor, rows = factors
+    values = c / rows
+    slope, terms, row_terms = _sums(
+        x, values, g, J.pattern.starts, J.pattern.rows, J.data, multipliers, factor, rows
     )
+    y = multipliers * rows / factor
+    nu = bound_multipliers(x, slope, x_lower, x_upper)
+    measured = _measured(x, values, slope, terms, row_terms, nu, y, x_lower, x_upper, c_lower, c_upper)
+    return OptimalityResiduals(*measured, nu)
+
+
+@njit(cache=True, error_model="numpy")
+def _sums(
+    x: FloatArray,
+    c: FloatArray,
+    g: FloatArray,
+    starts: IntArray,
+    rows: IntArray,
+    data: FloatArray,
+    multipliers: FloatArray,
+    factor: float,
+    factors: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The Lagrangian's slope (n,), the size of what it is the sum of (n,), and about the size of
+    what the rows are sums of (m,), |c| + |J||x|; unscaled."""
+    slope, terms, row_terms = np.empty_like(x), np.empty_like(x), np.abs(c)
+    for j in range(len(x)):
+        total, size = g[j], abs(g[j])
+        for k in range(starts[j], starts[j + 1]):
+            i = rows[k]
+            term = data[k] * multipliers[i]
+            total += term
+            size += abs(term)
+            row_terms[i] += abs(data[k] * x[j]) / factors[i]
+        slope[j], terms[j] = total / factor, size / factor
+    return slope, terms, row_terms
+
+
+@njit(cache=True, error_model="numpy")
+def _measured(
+    x: FloatArray,
+    c: FloatArray,
+    slope: FloatArray,
+    terms: FloatArray,
+    row_terms: FloatArray,
+    nu: FloatArray,
+    y: FloatArray,
+    x_lower: FloatArray,
+    x_upper: FloatArray,
+    c_lower: FloatArray,
+    c_upper: FloatArray,
+) -> tuple[float, float, float, float, bool]:
+    """The measures of `OptimalityResiduals`, in their order."""
+    stationarity, pressed, violation, relative, rounding = 0.0, 0.0, 0.0, 0.0, True
+    for j in range(len(x)):
+        left = abs(slope[j] + nu[j])
+        stationarity = max(stationarity, left)
+        relative = max(relative, left / max(1.0, terms[j]))
+        violation = max(violation, x_lower[j] - x[j], x[j] - x_upper[j])
+        if nu[j] != 0.0:
+            gap = x_upper[j] - x[j] if nu[j] > 0.0 else x[j] - x_lower[j]
+            pressed = max(pressed, abs(nu[j]) * gap)
+            relative = max(relative, abs(nu[j]) * gap / max(1.0, abs(nu[j])))
+    for i in range(len(c)):
+        outside = max(c_lower[i] - c[i], c[i] - c_upper[i], 0.0)
+        violation = max(violation, outside)
+        rounding = rounding and outside <= _ROUNDING * row_terms[i]
+        gap = abs(c_upper[i] - c[i]) if y[i] > 0.0 else abs(c[i] - c_lower[i])
+        # A distance beyond 1 counts as 1: a multiplier without a bound, or far from it, counts
+        # itself.
+        product = abs(y[i]) * min(gap, 1.0)
+        pressed = max(pressed, product)
+        relative = max(relative, product / max(1.0, abs(y[i])))
+    return stationarity, pressed, violation, relative, rounding
 
 
 def at_bounds(x: FloatArray, lower: FloatArray, upper: FloatArray) -> tuple[BoolArray, BoolArray]:
@@ -124,7 +174,3 @@ def bound_multipliers(
     at_lower, at_upper = at_bounds(x, lower, upper)
     active = (at_lower & (slope > 0)) | (at_upper & (slope < 0))
     return np.where(active, -slope, 0.0)
-
-
-def _largest(values: FloatArray) -> float:
-    return float(values.max(initial=0.0))

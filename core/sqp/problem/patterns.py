@@ -39,10 +39,23 @@ class Pattern:
             NlpError: it is no matrix of real numbers, has another shape, or entries outside the
                 pattern.
         """
+        if self._known is not None and self._is_known(value):
+            self._open = False
+            return SparseMatrix(self._known, value.data.copy())  # type: ignore[attr-defined]
         found = matrix(self._name, value, self._shape)
         if isinstance(found, np.ndarray):
             return self._from_dense(found)
         return self._from_sparse(found)
+
+    def _is_known(self, value: object) -> bool:
+        """Whether it is a sparse matrix of the known pattern, which needs no conversion."""
+        assert self._known is not None
+        return (
+            isinstance(value, sparse.csc_array | sparse.csc_matrix)
+            and value.shape == self._shape
+            and value.dtype == np.float64
+            and self._known.equals(value.indices, value.indptr)
+        )
 
     def _from_sparse(self, csc: sparse.csc_array) -> SparseMatrix:
         if self._known is not None and self._known.equals(csc.indices, csc.indptr):

@@ -8,7 +8,7 @@ from ...arrays import FloatArray
 from . import violation
 from .evaluation import Evaluation, Point
 from .nlp import NLP
-from .optimality import OptimalityResiduals, lagrangian_slope, residuals, row_terms, slope_terms
+from .optimality import OptimalityResiduals, residuals
 from .patterns import Pattern
 
 
@@ -71,15 +71,9 @@ class ScaledProblem:
 
     def residuals(self, point: Point, multipliers: FloatArray) -> OptimalityResiduals:
         """How far a point is from a solution, unscaled; multipliers are the scaled ones."""
-        evaluation, factor = self.evaluation, self.evaluation.objective_factor
+        factors = self.evaluation.objective_factor, self.evaluation.constraint_factors
         return residuals(
-            point.x,
-            point.c / evaluation.constraint_factors,
-            lagrangian_slope(point.g, point.J, multipliers) / factor,
-            slope_terms(point.g, point.J, multipliers) / factor,
-            row_terms(point.x, point.c, point.J) / evaluation.constraint_factors,
-            self.to_user(multipliers),
-            self.nlp.bounds,
+            point.x, point.c, point.g, point.J, multipliers, self.nlp.bounds, factors
         )
 
     def result_residuals(
@@ -88,6 +82,5 @@ class ScaledProblem:
         """Objective and residuals at x, computed anew from the callables; multipliers (m,) are the
         unscaled ones."""
         f, c, g, J = self.evaluation.unscaled(x)
-        slope, terms = lagrangian_slope(g, J, multipliers), slope_terms(g, J, multipliers)
-        rows = row_terms(x, c, J)
-        return f, residuals(x, c, slope, terms, rows, multipliers, self.nlp.bounds)
+        ones = 1.0, np.ones(self.nlp.m)
+        return f, residuals(x, c, g, J, multipliers, self.nlp.bounds, ones)

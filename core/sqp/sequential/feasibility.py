@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..arrays import FloatArray
-from .filter import Filter
+from ...arrays import FloatArray
+from ..filter import Filter
 from .model import Model
-from .problem.errors import CallableError
-from .problem.evaluation import Point
-from .problem.scaled import ScaledProblem
+from ..problem.errors import CallableError
+from ..problem.evaluation import Point
+from ..problem.scaled import ScaledProblem
 from .restoration import Limits, Restoration, RestorationOutcome, Restored
 from .search import FilterStep, Search
 

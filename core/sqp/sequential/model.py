@@ -6,18 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 from .convexify import ActiveSet, ConvexModel, raised
 from .damping import Damping
-from .filter import NO_VIOLATION
-from .options import StepBox, box_limits
-from .problem import violation
-from .problem.evaluation import Point
-from .problem.hessians import HessianSource
-from .problem.optimality import at_bounds, bound_multipliers, lagrangian_slope
-from .problem.scaled import ScaledProblem
-from .qp.problem import QpSolution, QpStatus, QuadraticProgram, in_units
-from .workspace import Workspace
+from ..filter import NO_VIOLATION
+from ..options import StepBox, box_limits
+from ..problem import violation
+from ..problem.evaluation import Point
+from ..problem.hessians import HessianSource
+from ..problem.optimality import at_bounds, bound_multipliers, lagrangian_slope
+from ..problem.scaled import ScaledProblem
+from ..qp.problem import QpSolution, QpStatus, QuadraticProgram, in_units
+from ..workspace import Workspace
 
 _FIRST_RADIUS = 1e3
 _DROP_RADIUS = 1e30

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from .algebra.matrices import SparseMatrix, Sparsity
-from .qp.problem import QpSolution, QpStatus, QuadraticProgram
-from .qp.subproblems import Subproblems
+from ..algebra.matrices import SparseMatrix, Sparsity
+from ..qp.problem import QpSolution, QpStatus, QuadraticProgram
+from ..qp.subproblems import Subproblems
 
 
 class Elastic:

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..arrays import FloatArray
-from .algebra.linear import Saddle
-from .algebra.matrices import SparseMatrix, Sparsity
-from .problem.evaluation import Point
-from .problem.optimality import at_bounds, slope_terms
-from .problem.scaled import ScaledProblem
-from .qp.problem import QpSolution, QpStatus, QuadraticProgram
-from .qp.subproblems import Subproblems
+from ...arrays import FloatArray
+from ..algebra.linear import Saddle
+from ..algebra.matrices import SparseMatrix, Sparsity
+from ..problem.evaluation import Point
+from ..problem.optimality import at_bounds, slope_terms
+from ..problem.scaled import ScaledProblem
+from ..qp.problem import QpSolution, QpStatus, QuadraticProgram
+from ..qp.subproblems import Subproblems
 
 _LARGEST = 1e3
 

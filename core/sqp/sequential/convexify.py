@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import BoolArray, FloatArray, IntArray
-from .algebra.linear import Definiteness
-from .algebra.matrices import SparseMatrix, Sparsity
+from ...arrays import BoolArray, FloatArray, IntArray
+from ..algebra.linear import Definiteness
+from ..algebra.matrices import SparseMatrix, Sparsity
 
 _SLACK = 1e-9
 """Share of a row's size by which a Hessian may fall short of being semidefinite."""

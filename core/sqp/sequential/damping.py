@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ...arrays import FloatArray
 
 _FIRST = 10.0
 _DECAY, _GROWTH = 0.3, 10.0

@@ -1,0 +1,211 @@
+"""The primal–dual interior-point method with a filter line search.
+
+Wächter and Biegler, "On the implementation of an interior-point filter line-search algorithm for
+large-scale nonlinear programming" (2006).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum, auto
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ..algebra.linear import SaddlePatterns
+from ..algebra.matrices import SparseMatrix
+from ..filter import Filter
+from ..problem.errors import CallableError
+from ..problem.evaluation import Point
+from .barrier import Barrier, BarrierKind
+from .direction import Errors, errors_at, lagrangian_slopes, products_after
+from .functions import Functions
+from .iterate import Box, Iterate, advance, keep_near, longest, push_inside
+from .line_search import LineSearch, Taken
+from .newton import Newton, Place, SingularError
+
+_RELAXED = 1e-8
+_TINY = 1e-13
+_LARGEST_FACTOR, _SMALL_FACTOR = 1e4, 1e-4
+
+
+class Outcome(Enum):
+    """How an interior point ended."""
+
+    SMALL = auto()
+    """Its residuals are as small as asked for."""
+    STUCK = auto()
+    """No step helps."""
+    STOPPED = auto()
+    """The caller wanted no more."""
+
+
+class InteriorPoint:
+    """One solution.
+
+    Args:
+        functions: of the problem.
+        patterns: keeps symbolic factorisations.
+        tolerance: of the residuals, scaled.
+        barrier: how μ falls.
+        seen: called with the place after each iteration, the step's length and its kind; True ends
+            the solution.
+
+    Attributes:
+        place: where it is.
+        outcome: how it ended.
+    """
+
+    def __init__(
+        self,
+        functions: Functions,
+        patterns: SaddlePatterns,
+        tolerance: float,
+        barrier: Barrier,
+        seen: Callable[[InteriorPoint, float, str], bool],
+    ) -> None:
+        self.functions = functions
+        self.tolerance = tolerance
+        self.barrier = barrier
+        self._seen = seen
+        self.box = make_box(functions, tolerance)
+        self.newton = Newton(patterns, self.box)
+        self.search = LineSearch(functions, self.box, self.newton)
+        self.hessian: SparseMatrix
+
+    def start(self, point: Point) -> None:
+        """Begin at a point with derivatives.
+
+        Raises:
+            CallableError: nothing has a value where the limits are pushed away from.
+        """
+        n = len(point.x)
+        at, moved = self._inside(point)
+        self.hessian = self.functions.hessian(moved, at.y)
+        self.place = Place(at, moved, moved.c - at.v[n:])
+        at.y[:] = self.newton.first_multipliers(self.place, self.hessian)
+        self._start_theta = max(1.0, float(np.abs(self.place.rest).sum()))
+        self._new_filter()
+
+    def _inside(self, point: Point) -> tuple[Iterate, Point]:
+        """The start in the interior; nearer to its bounds where callables have no values inside."""
+        box, n, m = self.box, len(point.x), len(point.c)
+        for share in (1.0, 1e-3, 1e-6):
+            v = np.concatenate([point.x, point.c])
+            push_inside(v, box, share)
+            try:
+                moved = self._moved(point, v[:n].copy())
+                break
+            except CallableError:
+                if share == 1e-6:
+                    raise
+        v[n:] = moved.c
+        push_inside(v, box, share)
+        low = np.where(np.isfinite(box.lower) & ~box.held, 1.0, 0.0)
+        high = np.where(np.isfinite(box.upper) & ~box.held, 1.0, 0.0)
+        return Iterate(v, np.zeros(m), low, high), moved
+
+    def _moved(self, point: Point, x: FloatArray) -> Point:
+        if np.array_equal(x, point.x):
+            return point
+        moved = self.functions.point(x)
+        self.functions.differentiate(moved)
+        return moved
+
+    def _new_filter(self) -> None:
+        self.search.filter = Filter(
+            _LARGEST_FACTOR * self._start_theta, _SMALL_FACTOR * self._start_theta
+        )
+
+    def errors(self) -> Errors:
+        """Of the problem itself, μ = 0."""
+        place = self.place
+        slopes = lagrangian_slopes(place.at, place.derivatives)
+        return errors_at(place.at, self.box, slopes, place.rest)
+
+    def run(self) -> Outcome:
+        """Iterate until the end.
+
+        Raises:
+            CallableError: the Hessian has no value.
+        """
+        length, kind, tiny = 0.0, "", 0
+        while True:
+            if self._seen(self, length, kind):
+                return Outcome.STOPPED
+            errors = self.errors()
+            if self._small(errors):
+                return Outcome.SMALL
+            if self.barrier.update(errors):
+                self._new_filter()
+            taken = self._step()
+            if taken is None:
+                return Outcome.STUCK
+            length, kind = taken.length, taken.kind
+            size = float((np.abs(taken.step.v) / (1.0 + np.abs(self.place.at.v))).max())
+            self._advance(taken)
+            tiny = tiny + 1 if size * length < _TINY else 0
+            if tiny and not self.barrier.lower() and tiny > 1:
+                return Outcome.STUCK
+
+    def _small(self, errors: Errors) -> bool:
+        worst = max(errors.dual, errors.primal, errors.largest / errors.scale)
+        return worst <= self.tolerance
+
+    def _step(self) -> Taken | None:
+        """The next step that is taken; None where none helps."""
+        place, barrier = self.place, self.barrier
+        self.hessian = self.functions.hessian(place.point, place.at.y)
+        try:
+            self.newton.factorise(place, self.hessian, barrier.mu)
+            if barrier.free:
+                self._choose()
+            while True:
+                step, slope = self.newton.step(barrier.mu)
+                taken = self.search.along(place, step, slope, barrier.mu)
+                if taken is not None:
+                    return taken
+                if not barrier.lower():
+                    return None
+                self._new_filter()
+        except SingularError:
+            return None
+
+    def _choose(self) -> None:
+        """μ from the step for none."""
+        at, box = self.place.at, self.box
+        step, _ = self.newton.step(0.0)
+        primal, dual = longest(at, step, box, 1.0)
+        self.barrier.choose(*products_after(at, step, box, primal, dual))
+
+    def _advance(self, taken: Taken) -> None:
+        place, mu = self.place, self.barrier.mu
+        _, dual = longest(place.at, taken.step, self.box, max(0.99, 1.0 - mu))
+        advance(place.at, taken.step, self.box, taken.v, taken.length, dual, mu)
+        n = len(taken.point.x)
+        self.place = Place(place.at, taken.point, taken.point.c - taken.v[n:])
+
+    def jump(self, point: Point, slacks: FloatArray) -> None:
+        """Go on from a point with derivatives, its multipliers chosen anew."""
+        box, n = self.box, len(point.x)
+        v = np.concatenate([point.x, slacks])
+        old = self.place.at
+        at = Iterate(v, np.zeros(len(point.c)), np.minimum(old.low, 1e3), np.minimum(old.high, 1e3))
+        keep_near(at, box, self.barrier.mu, 10.0)
+        self.place = Place(at, point, point.c - v[n:])
+        at.y[:] = self.newton.first_multipliers(self.place, self.hessian)
+
+
+def make_box(functions: Functions, tolerance: float) -> Box:
+    """Limits of variables and slacks. Those of slacks are a little wider than asked for, so that
+    there is an interior; the variables' are not: beyond them functions may have no value."""
+    fixed = functions.x_lower == functions.x_upper
+    equal = functions.c_lower == functions.c_upper
+    wider = min(_RELAXED, 1e-2 * tolerance)
+    lower = functions.c_lower - np.where(equal, 0.0, wider * np.maximum(1.0, np.abs(functions.c_lower)))
+    upper = functions.c_upper + np.where(equal, 0.0, wider * np.maximum(1.0, np.abs(functions.c_upper)))
+    return Box(
+        np.concatenate([functions.x_lower, lower]),
+        np.concatenate([functions.x_upper, upper]),
+        np.concatenate([fixed, equal]),
+    )

@@ -1,0 +1,157 @@
+"""Newton's steps for the barrier's problems: inertia corrected, one factorisation as a rule."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray
+from ..algebra.linear import SaddlePatterns
+from ..algebra.matrices import SparseMatrix, Sparsity
+from ..problem.evaluation import Point
+from .direction import (
+    Derivatives,
+    barrier_slopes,
+    lagrangian_slopes,
+    step_from,
+)
+from .iterate import Box, Iterate
+from .system import System, Weights
+
+_FIRST_SHIFT, _LEAST_SHIFT, _LARGEST_SHIFT = 1e-4, 1e-20, 1e40
+_FAST, _GROW, _SHRINK = 100.0, 8.0, 1.0 / 3.0
+_DEPENDENT = 1e-8
+_BAD = 1e-6
+_LARGEST_FIRST = 1e3
+
+
+class SingularError(ArithmeticError):
+    """No shift gives the system the right inertia."""
+
+
+@dataclass(slots=True)
+class Place:
+    """A point of the interior with all that is known of it.
+
+    Args:
+        at: variables, slacks, multipliers.
+        point: values and derivatives.
+        rest: (m,) c − s.
+    """
+
+    at: Iterate
+    point: Point
+    rest: FloatArray
+
+    @property
+    def derivatives(self) -> Derivatives:
+        """As compiled code takes them."""
+        J = self.point.J
+        return Derivatives(self.point.g, J.pattern.starts, J.pattern.rows, J.data)
+
+
+class Newton:
+    """Steps of one solution.
+
+    Args:
+        patterns: keeps symbolic factorisations.
+        box: limits.
+
+    Attributes:
+        shift: by which the last Hessian's diagonal was raised.
+    """
+
+    def __init__(self, patterns: SaddlePatterns, box: Box) -> None:
+        self._patterns = patterns
+        self._box = box
+        self._known: tuple[Sparsity, Sparsity, System] | None = None
+        self._last_shift = 0.0
+        self.shift = 0.0
+
+    def _system_of(self, H: Sparsity, A: Sparsity) -> System:
+        if self._known is None or self._known[0] is not H or self._known[1] is not A:
+            held: BoolArray = self._box.held[: H.shape[0]]
+            self._known = H, A, System(self._patterns.of(H, A), H, A, held)
+        return self._known[2]
+
+    def factorise(self, place: Place, H: SparseMatrix, mu: float) -> None:
+        """Factorise with the least shift, of a growing sequence, that gives the right inertia
+        (Wächter and Biegler, section 3.1).
+
+        Raises:
+            SingularError: none does.
+        """
+        self._place = place
+        J, n = place.point.J, len(place.point.x)
+        self._system = self._system_of(H.pattern, J.pattern)
+        self._dependent = 0.0
+
+        def right(shift: float) -> bool:
+            found = self._system.factorise(H, J, place.at, self._box, shift, self._dependent)
+            if found == n:
+                self.shift = shift
+            return found == n
+
+        self._again = right
+        if right(0.0):
+            return
+        self._dependent = _DEPENDENT * mu**0.25
+        shift = self._last_shift * _SHRINK if self._last_shift else _FIRST_SHIFT
+        shift = max(shift, _LEAST_SHIFT)
+        while not right(shift):
+            shift *= _GROW if self._last_shift else _FAST
+            if shift > _LARGEST_SHIFT:
+                raise SingularError("no shift makes the system definite")
+        self._last_shift = shift
+
+    @property
+    def plain(self) -> FloatArray:
+        """Slopes (n + m,) of the Lagrangian without the barrier."""
+        return lagrangian_slopes(self._place.at, self._place.derivatives)
+
+    def step(self, mu: float, rest: FloatArray | None = None) -> tuple[Iterate, float]:
+        """The step for μ, and the slope of objective and barrier along it.
+
+        Args:
+            rest: (m,) what is to be taken away of c − s; None for all of it.
+        """
+        place = self._place
+        wanted = place.rest if rest is None else rest
+        slope = barrier_slopes(self.plain, place.at, self._box, mu)
+        found, left = self._system.solve(slope, wanted, self._box)
+        if left > _BAD and self._dependent == 0.0:
+            self._dependent = _DEPENDENT
+            if self._again(self.shift):
+                found, left = self._system.solve(slope, wanted, self._box)
+        if not np.isfinite(left):
+            raise SingularError("the system has no finite solution")
+        sigma = self._system.weights.sigma
+        return step_from(
+            found, sigma, slope, wanted, place.derivatives, place.at, self._box, mu
+        )
+
+    def first_multipliers(self, place: Place, H: SparseMatrix) -> FloatArray:
+        """Multipliers (m,) of the rows that leave least of the slopes, in least squares; zeros
+        where they are large (section 3.6).
+
+        Args:
+            H: gives the pattern.
+        """
+        box, at, J = self._box, place.at, place.point.J
+        n, m = len(place.point.x), len(at.y)
+        if not m:
+            return np.zeros(0)
+        system = self._system_of(H.pattern, J.pattern)
+        ends = np.isfinite(box.lower[n:]) | np.isfinite(box.upper[n:])
+        exact = np.ones(n + m)
+        exact[n:] = np.where(box.held[n:], 0.0, -1.0)
+        weights = Weights(np.ones(n + m), ends.astype(np.float64), exact)
+        zero = SparseMatrix(H.pattern, np.zeros(H.pattern.size))
+        if system.factorise_weighted(zero, J, weights) != n:
+            return np.zeros(m)
+        slope = np.concatenate([place.point.g, np.zeros(m)]) - at.low + at.high
+        found, left = system.solve(slope, np.zeros(m), box)
+        y = found[n:]
+        good = left < _BAD and float(np.abs(y).max()) <= _LARGEST_FIRST
+        return y.copy() if good else np.zeros(m)

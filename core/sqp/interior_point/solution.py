@@ -1,0 +1,138 @@
+"""A solution by the interior point: iterations, restorations, the last digits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...arrays import FloatArray
+from ..options import Options
+from ..problem.evaluation import Point
+from ..problem.hessians import HessianSource
+from ..problem.scaled import ScaledProblem
+from ..progress import Progress
+from ..workspace import Workspace
+from .barrier import Barrier, BarrierKind
+from .functions import UserFunctions
+from .last_digits import LastDigits
+from .method import InteriorPoint, Outcome
+from .newton import SingularError
+from .restoration import curvature_of, restored
+
+_TRIED_FROM = 1e-3
+_TRIED_AGAIN = 0.1
+_LEAST_MU = 1e-3
+_RESTORATIONS = 10
+_PATIENCE = 100
+"""Iterations in a row without smaller residuals after which the method gives up."""
+_SHARE = 0.5
+"""Of all iterations after which it gives up; the rest is left to the other method."""
+_FAR = 1e8
+"""By which variables may grow; unbounded problems are left to the other method."""
+
+
+class InteriorSolution:
+    """One solution.
+
+    Args:
+        problem: the problem, whose scale is chosen.
+        hessian: of its Lagrangian.
+        workspace: what is kept from one solution to the next.
+        options: of the solution.
+        progress: takes note of what is done.
+    """
+
+    def __init__(
+        self,
+        problem: ScaledProblem,
+        hessian: HessianSource,
+        workspace: Workspace,
+        options: Options,
+        progress: Progress,
+    ) -> None:
+        self._problem = problem
+        self._hessian = hessian
+        self._patterns = workspace.saddles
+        self._progress = progress
+        self._tolerance = options.tolerance
+        self._digits = LastDigits(problem, hessian, self._patterns, progress, options.tolerance)
+        self._try_at = _TRIED_FROM
+        self._before: Point | None = None
+        self._least = np.inf
+        self._idle = 0
+        self._last = int(_SHARE * options.max_iterations)
+
+    def run(self, point: Point) -> None:
+        """Begin at a point with derivatives; returns where the method gives up.
+
+        Raises:
+            End: when the solution ends.
+            CallableError: nothing has a value where it begins, or the Hessian has none.
+        """
+        self._progress.visit(point, np.zeros(self._problem.nlp.m), 0.0, "", 0.0)
+        self._farthest = _FAR * max(1.0, float(np.abs(point.x).max()))
+        scale = min(1.0, self._problem.evaluation.objective_factor)
+        tolerance = self._tolerance * scale
+        method = InteriorPoint(
+            UserFunctions(self._problem, self._hessian),
+            self._patterns,
+            0.1 * tolerance,
+            Barrier(BarrierKind.MONOTONE, _LEAST_MU * tolerance),
+            self._seen,
+        )
+        try:
+            method.start(point)
+        except SingularError:
+            return
+        for _ in range(_RESTORATIONS):
+            outcome = method.run()
+            self._progress.trouble = method.search.trouble
+            if outcome is not Outcome.STUCK or not self._restored(method):
+                return
+
+    def _seen(self, method: InteriorPoint, length: float, kind: str) -> bool:
+        """Take note of an iteration; try for the last digits where they are near."""
+        place, progress = method.place, self._progress
+        point, y = place.point, place.at.y
+        if kind:
+            progress.iterations += 1
+            if self._before is not None:
+                self._hessian.moved(self._before, point, y)
+            progress.visit(point, y, length, kind, method.newton.shift)
+        self._before = point
+        errors = method.errors()
+        worst = max(errors.dual, errors.primal, errors.largest / errors.scale)
+        if worst > self._try_at:
+            return self._hopeless(method, worst)
+        self._try_at = _TRIED_AGAIN * worst
+        H = self._hessian.matrix(point, y)
+        found = self._digits.of(place, method.box, H)
+        if found is not None:
+            progress.iterations += 1
+            progress.visit(found.point, found.multipliers, 1.0, "active_set", 0.0)
+        return False
+
+    def _hopeless(self, method: InteriorPoint, worst: float) -> bool:
+        """Whether to give up: residuals have not got smaller for long, most iterations are used
+        up, or the point goes where a solution is not."""
+        self._idle = 0 if worst < self._least else self._idle + 1
+        self._least = min(self._least, worst)
+        far = float(np.abs(method.place.point.x).max()) > self._farthest
+        late = self._progress.iterations >= self._last
+        return far or late or self._idle > _PATIENCE
+
+    def _restored(self, method: InteriorPoint) -> bool:
+        """Whether the method can go on from a less violated point."""
+        theta = float(np.abs(method.place.rest).sum())
+        if theta <= self._tolerance:
+            return False
+        found = restored(method, curvature_of(self._problem), self._patterns, self._moved)
+        if found is None:
+            return False
+        method.jump(*found)
+        self._before = None
+        return True
+
+    def _moved(self, point: Point, length: float) -> None:
+        self._progress.iterations += 1
+        zero = np.zeros(len(point.c))
+        self._progress.visit(point, zero, length, "restoration", 0.0)

@@ -1,0 +1,45 @@
+"""The methods, and which of them a solution begins with."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from .options import Options
+from .problem.errors import NlpError
+from .problem.hessians import HessianKind
+from .problem.nlp import NLP
+
+_LARGE = 60
+"""Variables and constraints from which on a problem counts as large."""
+
+
+class Method(StrEnum):
+    """How a problem is solved."""
+
+    AUTO = "auto"
+    """The interior point for large problems without a warm start or a box round the step, if there
+    are second derivatives; else sequential quadratic programming. Depends on nothing else."""
+    INTERIOR_POINT = "interior_point"
+    """The primal–dual interior point. Where it ends without a solution, sequential quadratic
+    programming goes on from the best point, and finds out why."""
+    SQP = "sqp"
+    """Sequential quadratic programming."""
+
+
+def chosen(wanted: Method | str, nlp: NLP, kind: HessianKind, options: Options) -> Method:
+    """The method that a solution begins with.
+
+    Raises:
+        NlpError: there is no such method, or it cannot do what the options ask for.
+    """
+    try:
+        method = Method(wanted)
+    except ValueError:
+        raise NlpError(f"method: one of {', '.join(Method)}, not {wanted!r}") from None
+    if method is Method.INTERIOR_POINT and options.step_box is not None:
+        raise NlpError("step_box needs method 'sqp' or 'auto': an interior point takes no box")
+    if method is not Method.AUTO:
+        return method
+    cold = options.warm_start is None and options.step_box is None
+    large = nlp.n + nlp.m >= _LARGE and kind is not HessianKind.BFGS
+    return Method.INTERIOR_POINT if cold and large else Method.SQP

@@ -1,0 +1,1 @@
+"""Sequential quadratic programming: one convex subproblem an iteration."""
