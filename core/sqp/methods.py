@@ -13,7 +13,7 @@ _LARGE = 60
 """Variables and constraints from which on a problem counts as large."""
 
 
-class Method(StrEnum):
+class SolverMethod(StrEnum):
     """How a problem is solved."""
 
     AUTO = "auto"
@@ -26,20 +26,22 @@ class Method(StrEnum):
     """Sequential quadratic programming."""
 
 
-def chosen(wanted: Method | str, nlp: NLP, kind: HessianKind, options: Options) -> Method:
+def chosen(
+    wanted: SolverMethod | str, nlp: NLP, kind: HessianKind, options: Options
+) -> SolverMethod:
     """The method that a solution begins with.
 
     Raises:
         NlpError: there is no such method, or it cannot do what the options ask for.
     """
     try:
-        method = Method(wanted)
+        method = SolverMethod(wanted)
     except ValueError:
-        raise NlpError(f"method: one of {', '.join(Method)}, not {wanted!r}") from None
-    if method is Method.INTERIOR_POINT and options.step_box is not None:
+        raise NlpError(f"method: one of {', '.join(SolverMethod)}, not {wanted!r}") from None
+    if method is SolverMethod.INTERIOR_POINT and options.step_box is not None:
         raise NlpError("step_box needs method 'sqp' or 'auto': an interior point takes no box")
-    if method is not Method.AUTO:
+    if method is not SolverMethod.AUTO:
         return method
     cold = options.warm_start is None and options.step_box is None
     large = nlp.n + nlp.m >= _LARGE and kind is not HessianKind.BFGS
-    return Method.INTERIOR_POINT if cold and large else Method.SQP
+    return SolverMethod.INTERIOR_POINT if cold and large else SolverMethod.SQP

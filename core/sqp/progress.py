@@ -16,7 +16,7 @@ from .result import Iteration
 from .verdict import Ending, Evidence, is_far, near
 
 
-class End(Exception):
+class SolutionEnd(Exception):
     """The solution ends."""
 
     def __init__(self, ending: Ending) -> None:
@@ -24,7 +24,7 @@ class End(Exception):
         self.ending = ending
 
 
-class Progress:
+class SolutionProgress:
     """The course of one solution.
 
     Args:
@@ -65,7 +65,7 @@ class Progress:
             length, kind, shift: of the step that led there; see `Iteration`.
 
         Raises:
-            End: nothing is left to do.
+            SolutionEnd: nothing is left to do.
         """
         at = self._problem.residuals(point, multipliers)
         self._remember(point, multipliers, at)
@@ -74,15 +74,17 @@ class Progress:
         if at.within(self._options.tolerance):
             raise self.converged(point, multipliers, at)
         if self.evidence(self.best.at, self.best.objective).away or self._is_away(point):
-            raise End(Ending.AWAY)
+            raise SolutionEnd(Ending.AWAY)
         if self.iterations >= self._options.max_iterations:
-            raise End(Ending.LIMIT)
+            raise SolutionEnd(Ending.LIMIT)
         return at
 
-    def converged(self, point: Point, multipliers: FloatArray, at: OptimalityResiduals) -> End:
+    def converged(
+        self, point: Point, multipliers: FloatArray, at: OptimalityResiduals
+    ) -> SolutionEnd:
         """The end at a solution."""
         self.best = self.as_best(point, multipliers, at)
-        return End(Ending.CONVERGED)
+        return SolutionEnd(Ending.CONVERGED)
 
     def as_best(self, point: Point, multipliers: FloatArray, at: OptimalityResiduals) -> Best:
         """A point with what is known of it."""
@@ -138,4 +140,4 @@ class Progress:
             kind,
         )
         if self._options.callback(seen):
-            raise End(Ending.CALLBACK)
+            raise SolutionEnd(Ending.CALLBACK)

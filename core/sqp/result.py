@@ -48,8 +48,9 @@ class Iteration:
         step: largest change of a variable in the step that led here.
         step_length: share of the subproblem's step that was taken.
         shift: the most by which an entry of the Hessian's diagonal was raised, to make it convex.
-        kind: of step: ``normal``, ``active_set`` (the last digits of an interior point), ``corrected`` (second order), ``elastic``, ``restoration``,
-            ``descent`` (the steepest, where no model's step helped).
+        kind: of step: ``normal``, ``corrected`` (second order), ``elastic``, ``restoration``,
+            ``descent`` (the steepest, where no model's step helped), ``active_set`` (the last
+            digits of an interior point).
     """
 
     number: int

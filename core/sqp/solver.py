@@ -9,14 +9,14 @@ from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
 from .interior_point.solution import InteriorSolution
-from .methods import Method, chosen
+from .methods import SolverMethod, chosen
 from .options import Callback, Options, StepBox, start_point
 from .problem.errors import CallableError
 from .problem.evaluation import Point
 from .problem.hessians import HessianKind, choose_kind, make_source
 from .problem.nlp import NLP
 from .problem.scaled import ScaledProblem
-from .progress import End, Progress
+from .progress import SolutionEnd, SolutionProgress
 from .qp.backends import BackendKind, make_backends
 from .result import Result, Status, Timings
 from .sequential.method import Sequential
@@ -29,7 +29,7 @@ def solve(
     nlp: NLP,
     x0: ArrayLike,
     *,
-    method: Method | str = Method.AUTO,
+    method: SolverMethod | str = SolverMethod.AUTO,
     tolerance: float = 1e-6,
     max_iterations: int = 500,
     qp: BackendKind | str = BackendKind.CLARABEL,
@@ -45,7 +45,7 @@ def solve(
         nlp: the problem.
         x0: (n,) start; it is moved into the bounds.
         method: sequential quadratic programming, the interior point, or which of them suits: see
-            `Method`.
+            `SolverMethod`.
         tolerance: on KKT residual and constraint violation, unscaled.
         max_iterations: of the outer iteration, those of restorations included.
         qp: back end for the subproblems of sequential quadratic programming: see `BackendKind`.
@@ -86,16 +86,16 @@ class _Solution:
         options: Options,
         kind: HessianKind,
         workspace: Workspace,
-        first: Method,
+        first: SolverMethod,
     ) -> None:
         self._nlp = nlp
         self._options = options
         self._workspace = workspace
         self._first = first
-        self._used: list[Method] = []
+        self._used: list[SolverMethod] = []
         self._problem = ScaledProblem(nlp, workspace.jacobian, workspace.hessian)
         self._hessian = make_source(kind, self._problem.evaluation)
-        self._progress = Progress(self._problem, options)
+        self._progress = SolutionProgress(self._problem, options)
         self._begin = time.perf_counter()
 
     def run(self, x0: FloatArray) -> Result:
@@ -106,7 +106,7 @@ class _Solution:
         self._progress.begin(point, np.zeros(self._nlp.m))
         try:
             ending = self._iterate(point)
-        except End as end:
+        except SolutionEnd as end:
             ending = end.ending
         except CallableError as error:  # of the Hessian: nothing shorter can be tried
             ending, self._progress.trouble = Ending.NO_STEP, error
@@ -120,14 +120,14 @@ class _Solution:
         """Iterate until the end, which is an exception."""
         parts = (self._problem, self._hessian, self._workspace, self._options, self._progress)
         sequential = Sequential(*parts)
-        if self._first is Method.INTERIOR_POINT:
-            self._used.append(Method.INTERIOR_POINT)
+        if self._first is SolverMethod.INTERIOR_POINT:
+            self._used.append(SolverMethod.INTERIOR_POINT)
             InteriorSolution(*parts).run(point)
             self._progress.iterations += 1
             best = self._progress.best  # it gave up: the other method goes on, or says why not
-            self._used.append(Method.SQP)
+            self._used.append(SolverMethod.SQP)
             sequential.go_on(best.point, best.multipliers, point)
-        self._used.append(Method.SQP)
+        self._used.append(SolverMethod.SQP)
         sequential.run(point)
         raise AssertionError("methods end by an exception")
 
@@ -150,9 +150,7 @@ class _Solution:
             at.violation,
             progress.iterations,
             dict(evaluation.counts),
-            Timings(
-                time.perf_counter() - self._begin, evaluation.seconds, subproblems.seconds
-            ),
+            Timings(time.perf_counter() - self._begin, evaluation.seconds, subproblems.seconds),
             subproblems.used,
             " and ".join(dict.fromkeys(self._used)),
             self._workspace,

@@ -7,12 +7,12 @@ from threading import Lock
 
 from .algebra.linear import SaddlePatterns
 from .algebra.matrices import Sparsity, identity
-from .sequential.convexify import Convexifier
-from .sequential.elastic import Elastic
 from .problem.nlp import NLP
 from .problem.patterns import Pattern
 from .qp.problem import Backend
 from .qp.subproblems import Subproblems
+from .sequential.convexify import Convexifier
+from .sequential.elastic import Elastic
 
 
 @dataclass(slots=True)

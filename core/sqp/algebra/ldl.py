@@ -17,6 +17,8 @@ from scipy.sparse import linalg
 from ...arrays import FloatArray, IntArray
 
 _LEAST_PIVOT = 1e-300
+_DENSE_DEGREE, _DENSE_SHARE = 16, 10.0
+"""Neighbours, and their number over √n, from which on a variable is eliminated last."""
 
 
 class Factors(NamedTuple):
@@ -87,7 +89,24 @@ class Ldl:
 
 
 def _ordering(n: int, rows: IntArray, columns: IntArray) -> IntArray:
-    """A minimum-degree ordering: SuperLU's, of a matrix that has these places."""
+    """A minimum-degree ordering; what meets very many others (a final time, say) comes last, which
+    the search for the least degree would spend most of its time on."""
+    degrees = np.bincount(rows, minlength=n) + np.bincount(columns, minlength=n)
+    few = degrees <= max(_DENSE_DEGREE, _DENSE_SHARE * np.sqrt(n))
+    if few.all():
+        return _minimum_degree(n, rows, columns)
+    sparse_ones = np.flatnonzero(few)
+    number = np.full(n, -1)
+    number[sparse_ones] = np.arange(len(sparse_ones))
+    both = few[rows] & few[columns]
+    inner = _minimum_degree(len(sparse_ones), number[rows[both]], number[columns[both]])
+    return np.concatenate([sparse_ones[inner], np.flatnonzero(~few)])
+
+
+def _minimum_degree(n: int, rows: IntArray, columns: IntArray) -> IntArray:
+    """SuperLU's, of a matrix that has these places."""
+    if not n:
+        return np.zeros(0, dtype=np.int64)
     off = rows != columns
     i, j = rows[off], columns[off]
     diagonal = np.arange(n)

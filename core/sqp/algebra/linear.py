@@ -12,8 +12,8 @@ from . import dense
 from .ldl import Factors, Ldl, factorise, substitute
 from .matrices import SparseMatrix, Sparsity
 
-_REGULARISATION = 1e-8
-_REFINEMENTS = 4
+_REGULARISATION = 1e-9
+_REFINEMENTS = 10
 _EXACT = 1e-13
 _KEPT = 5
 
@@ -108,10 +108,15 @@ class Saddle:
 
     Args:
         patterns: keeps symbolic factorisations, others' too; None for its own.
+        regularisation: share of P's size by which the factorised system is shifted; more where P
+            is not semidefinite.
     """
 
-    def __init__(self, patterns: SaddlePatterns | None = None) -> None:
+    def __init__(
+        self, patterns: SaddlePatterns | None = None, regularisation: float = _REGULARISATION
+    ) -> None:
         self._patterns = patterns or SaddlePatterns()
+        self._regularisation = regularisation
 
     def solve(
         self,
@@ -153,7 +158,10 @@ class Saddle:
         right = np.concatenate([q, target])
         active = np.concatenate([~fixed, rows])
         found = np.zeros(n + len(target))
-        solved = _solve(matrices, pattern.factors, pattern.places, right, active, values, found)
+        shift = self._regularisation * max(1.0, P.largest())
+        solved = _solve(
+            matrices, pattern.factors, pattern.places, right, active, values, found, shift
+        )
         return (found[:n], found[n:]) if solved else None
 
 
@@ -177,6 +185,7 @@ def _solve(
     active: BoolArray,
     values: FloatArray,
     found: FloatArray,
+    delta: float,
 ) -> bool:
     """See `Saddle.solve`; works in place.
 
@@ -187,12 +196,9 @@ def _solve(
         active: (n + m,) free variables and active rows.
         values: (n,) of the variables that are not free.
         found: (n + m,) the solution is written there.
+        delta: shift of the factorised system.
     """
     n = len(values)
-    largest = 1.0
-    for k in range(len(matrices.P)):
-        largest = max(largest, abs(matrices.P[k]))
-    delta = _REGULARISATION * largest
     _switch_off(matrices, right, active, values)
     exact = np.where(active, 0.0, 1.0)
     data = np.zeros(len(factors.rows))
@@ -211,7 +217,7 @@ def _solve(
         data[places.A[k]] = matrices.A[k]
     if factorise(factors, data) < 0:
         return False
-    return refined(matrices, factors, exact, right, found, _EXACT) < np.inf
+    return bool(refined(matrices, factors, exact, right, found, _EXACT) < np.inf)
 
 
 @njit(cache=True, error_model="numpy")
@@ -287,7 +293,11 @@ def refined(
 
 @njit(cache=True, error_model="numpy")
 def _left(
-    matrices: SaddleMatrices, exact: FloatArray, right: FloatArray, found: FloatArray, left: FloatArray
+    matrices: SaddleMatrices,
+    exact: FloatArray,
+    right: FloatArray,
+    found: FloatArray,
+    left: FloatArray,
 ) -> None:
     """What is left of the right side, written to ``left``."""
     n = len(matrices.P_starts) - 1

@@ -8,13 +8,13 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from .iterate import Box, Iterate
+from .iterate import InteriorIterate, InteriorLimits
 
 _LARGE = 100.0
 """Mean multiplier from which on residuals count in proportion (Wächter and Biegler, equation 5)."""
 
 
-class Derivatives(NamedTuple):
+class FirstDerivatives(NamedTuple):
     """First derivatives.
 
     Args:
@@ -49,7 +49,7 @@ class Errors(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def lagrangian_slopes(at: Iterate, d: Derivatives) -> FloatArray:
+def lagrangian_slopes(at: InteriorIterate, d: FirstDerivatives) -> FloatArray:
     """Slopes (n + m,) of f + y·(c − s)."""
     n, m = len(d.g), len(at.y)
     found = np.empty(n + m)
@@ -64,7 +64,9 @@ def lagrangian_slopes(at: Iterate, d: Derivatives) -> FloatArray:
 
 
 @njit(cache=True, error_model="numpy")
-def barrier_slopes(plain: FloatArray, at: Iterate, box: Box, mu: float) -> FloatArray:
+def barrier_slopes(
+    plain: FloatArray, at: InteriorIterate, box: InteriorLimits, mu: float
+) -> FloatArray:
     """Slopes (n + m,) of the Lagrangian and the barrier; those of what is held are zero."""
     found = plain.copy()
     for k in range(len(found)):
@@ -84,11 +86,11 @@ def step_from(
     sigma: FloatArray,
     slope: FloatArray,
     rest: FloatArray,
-    d: Derivatives,
-    at: Iterate,
-    box: Box,
+    d: FirstDerivatives,
+    at: InteriorIterate,
+    box: InteriorLimits,
     mu: float,
-) -> tuple[Iterate, float]:
+) -> tuple[InteriorIterate, float]:
     """The whole step from that of variables and multipliers, and the slope of objective and
     barrier along it.
 
@@ -122,12 +124,12 @@ def step_from(
             gap = box.upper[k] - at.v[k]
             high[k] = mu / gap - at.high[k] + at.high[k] / gap * v[k]
             along += mu / gap * v[k]
-    return Iterate(v, y, low, high), along
+    return InteriorIterate(v, y, low, high), along
 
 
 @njit(cache=True, error_model="numpy")
 def products_after(
-    at: Iterate, step: Iterate, box: Box, primal: float, dual: float
+    at: InteriorIterate, step: InteriorIterate, box: InteriorLimits, primal: float, dual: float
 ) -> tuple[float, float]:
     """Mean product of multiplier and distance at a point, and after shares of a step."""
     before, later, count = 0.0, 0.0, 0
@@ -148,7 +150,9 @@ def products_after(
 
 
 @njit(cache=True, error_model="numpy")
-def errors_at(at: Iterate, box: Box, slopes: FloatArray, rest: FloatArray) -> Errors:
+def errors_at(
+    at: InteriorIterate, box: InteriorLimits, slopes: FloatArray, rest: FloatArray
+) -> Errors:
     """Errors at a point.
 
     Args:

@@ -95,4 +95,5 @@ class ElasticFunctions:
             size = n + 2 * m
             self._H = Sparsity((size, size), places % n, np.concatenate([starts, ends]))
         values = np.concatenate([H.data, self._weights])
-        return SparseMatrix(self._H, np.bincount(self._at, values, minlength=self._H.size))
+        total = np.bincount(self._at, values, minlength=self._H.size)
+        return SparseMatrix(self._H, np.asarray(total, np.float64))

@@ -11,7 +11,6 @@ from ..problem.evaluation import Point
 from ..problem.hessians import HessianSource
 from ..problem.scaled import ScaledProblem
 
-
 ConstraintHessian = Callable[[FloatArray, FloatArray], SparseMatrix]
 """x (n,), multipliers (m,) → Hessian of multipliers·c (n, n)."""
 

@@ -16,7 +16,7 @@ _LARGEST_RATIO = 1e10
 """By which a multiplier may differ from μ over its distance (section 3.5)."""
 
 
-class Box(NamedTuple):
+class InteriorLimits(NamedTuple):
     """Limits of the variables and of a slack for each row.
 
     Args:
@@ -29,7 +29,7 @@ class Box(NamedTuple):
     held: BoolArray
 
 
-class Iterate(NamedTuple):
+class InteriorIterate(NamedTuple):
     """A point of the interior and its multipliers.
 
     Args:
@@ -43,13 +43,13 @@ class Iterate(NamedTuple):
     low: FloatArray
     high: FloatArray
 
-    def copy(self) -> Iterate:
+    def copy(self) -> InteriorIterate:
         """One that may be changed."""
-        return Iterate(self.v.copy(), self.y.copy(), self.low.copy(), self.high.copy())
+        return InteriorIterate(self.v.copy(), self.y.copy(), self.low.copy(), self.high.copy())
 
 
 @njit(cache=True, error_model="numpy")
-def push_inside(v: FloatArray, box: Box, share: float) -> None:
+def push_inside(v: FloatArray, box: InteriorLimits, share: float) -> None:
     """Move values (n + m,) into the interior, what is held to its place.
 
     Args:
@@ -73,7 +73,7 @@ def push_inside(v: FloatArray, box: Box, share: float) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def keep_near(at: Iterate, box: Box, mu: float, ratio: float) -> None:
+def keep_near(at: InteriorIterate, box: InteriorLimits, mu: float, ratio: float) -> None:
     """Bring the limits' multipliers to within a ratio of μ over their distance; in place."""
     for k in range(len(at.v)):
         if box.held[k]:
@@ -88,7 +88,13 @@ def keep_near(at: Iterate, box: Box, mu: float, ratio: float) -> None:
 
 @njit(cache=True, error_model="numpy")
 def advance(
-    at: Iterate, step: Iterate, box: Box, v: FloatArray, share: float, dual: float, mu: float
+    at: InteriorIterate,
+    step: InteriorIterate,
+    box: InteriorLimits,
+    v: FloatArray,
+    share: float,
+    dual: float,
+    mu: float,
 ) -> None:
     """Take a step, in place.
 
@@ -106,7 +112,9 @@ def advance(
 
 
 @njit(cache=True, error_model="numpy")
-def longest(at: Iterate, step: Iterate, box: Box, keep: float) -> tuple[float, float]:
+def longest(
+    at: InteriorIterate, step: InteriorIterate, box: InteriorLimits, keep: float
+) -> tuple[float, float]:
     """The largest shares of a step that values and multipliers may take without losing more than
     ``keep`` of their distance from the limits."""
     primal, dual = 1.0, 1.0
@@ -127,7 +135,7 @@ def longest(at: Iterate, step: Iterate, box: Box, keep: float) -> tuple[float, f
 
 
 @njit(cache=True, error_model="numpy")
-def after(at: Iterate, step: Iterate, share: float) -> FloatArray:
+def after(at: InteriorIterate, step: InteriorIterate, share: float) -> FloatArray:
     """The values (n + m,) after a share of a step."""
     found = np.empty_like(at.v)
     for k in range(len(found)):
@@ -136,7 +144,7 @@ def after(at: Iterate, step: Iterate, share: float) -> FloatArray:
 
 
 @njit(cache=True, error_model="numpy")
-def reset_slacks(v: FloatArray, box: Box, c: FloatArray) -> None:
+def reset_slacks(v: FloatArray, box: InteriorLimits, c: FloatArray) -> None:
     """Take slacks to their rows' values where that leads away from their only limit: violation and
     barrier both fall. In place.
 
@@ -156,7 +164,7 @@ def reset_slacks(v: FloatArray, box: Box, c: FloatArray) -> None:
 
 
 @njit(cache=True, error_model="numpy")
-def merit(v: FloatArray, box: Box, c: FloatArray) -> tuple[float, float]:
+def merit(v: FloatArray, box: InteriorLimits, c: FloatArray) -> tuple[float, float]:
     """Violation Σ |c − s|, and the barrier −Σ log of distances; infinite outside."""
     theta, barrier = 0.0, 0.0
     n = len(v) - len(c)

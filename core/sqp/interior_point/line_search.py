@@ -11,7 +11,7 @@ from ..filter import Filter
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from .functions import Functions
-from .iterate import Box, Iterate, after, longest, merit, reset_slacks
+from .iterate import InteriorIterate, InteriorLimits, after, longest, merit, reset_slacks
 from .newton import Newton, Place, SingularError
 
 _HALVINGS = 25
@@ -35,7 +35,7 @@ class Taken:
 
     point: Point
     v: FloatArray
-    step: Iterate
+    step: InteriorIterate
     length: float
     kind: str
 
@@ -53,14 +53,14 @@ class LineSearch:
         trouble: of the callables at the shortest step tried last.
     """
 
-    def __init__(self, functions: Functions, box: Box, newton: Newton) -> None:
+    def __init__(self, functions: Functions, box: InteriorLimits, newton: Newton) -> None:
         self._functions = functions
         self._box = box
         self._newton = newton
         self.filter = Filter(np.inf, 0.0)
         self.trouble: CallableError | None = None
 
-    def along(self, place: Place, step: Iterate, slope: float, mu: float) -> Taken | None:
+    def along(self, place: Place, step: InteriorIterate, slope: float, mu: float) -> Taken | None:
         """As much of a step as the filter takes; None if it takes nothing.
 
         Args:
@@ -92,7 +92,9 @@ class LineSearch:
         theta, barrier = merit(v, self._box, point.c)
         return theta, point.f + mu * barrier
 
-    def _trial(self, place: Place, step: Iterate, length: float) -> tuple[Point, FloatArray] | None:
+    def _trial(
+        self, place: Place, step: InteriorIterate, length: float
+    ) -> tuple[Point, FloatArray] | None:
         v = after(place.at, step, length)
         self.trouble = None
         try:

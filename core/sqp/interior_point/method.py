@@ -17,10 +17,10 @@ from ..algebra.matrices import SparseMatrix
 from ..filter import Filter
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
-from .barrier import Barrier, BarrierKind
+from .barrier import Barrier
 from .direction import Errors, errors_at, lagrangian_slopes, products_after
 from .functions import Functions
-from .iterate import Box, Iterate, advance, keep_near, longest, push_inside
+from .iterate import InteriorIterate, InteriorLimits, advance, keep_near, longest, push_inside
 from .line_search import LineSearch, Taken
 from .newton import Newton, Place, SingularError
 
@@ -29,7 +29,7 @@ _TINY = 1e-13
 _LARGEST_FACTOR, _SMALL_FACTOR = 1e4, 1e-4
 
 
-class Outcome(Enum):
+class InteriorEnding(Enum):
     """How an interior point ended."""
 
     SMALL = auto()
@@ -72,9 +72,13 @@ class InteriorPoint:
         self.newton = Newton(patterns, self.box)
         self.search = LineSearch(functions, self.box, self.newton)
         self.hessian: SparseMatrix
+        self._of: Place | None = None
 
-    def start(self, point: Point) -> None:
+    def start(self, point: Point, theta: float = 1.0) -> None:
         """Begin at a point with derivatives.
+
+        Args:
+            theta: what violations are measured by at least.
 
         Raises:
             CallableError: nothing has a value where the limits are pushed away from.
@@ -84,10 +88,10 @@ class InteriorPoint:
         self.hessian = self.functions.hessian(moved, at.y)
         self.place = Place(at, moved, moved.c - at.v[n:])
         at.y[:] = self.newton.first_multipliers(self.place, self.hessian)
-        self._start_theta = max(1.0, float(np.abs(self.place.rest).sum()))
+        self._start_theta = max(1.0, theta, float(np.abs(self.place.rest).sum()))
         self._new_filter()
 
-    def _inside(self, point: Point) -> tuple[Iterate, Point]:
+    def _inside(self, point: Point) -> tuple[InteriorIterate, Point]:
         """The start in the interior; nearer to its bounds where callables have no values inside."""
         box, n, m = self.box, len(point.x), len(point.c)
         for share in (1.0, 1e-3, 1e-6):
@@ -103,7 +107,7 @@ class InteriorPoint:
         push_inside(v, box, share)
         low = np.where(np.isfinite(box.lower) & ~box.held, 1.0, 0.0)
         high = np.where(np.isfinite(box.upper) & ~box.held, 1.0, 0.0)
-        return Iterate(v, np.zeros(m), low, high), moved
+        return InteriorIterate(v, np.zeros(m), low, high), moved
 
     def _moved(self, point: Point, x: FloatArray) -> Point:
         if np.array_equal(x, point.x):
@@ -121,10 +125,10 @@ class InteriorPoint:
         """Of the problem itself, μ = 0."""
         place = self.place
         slopes = lagrangian_slopes(place.at, place.derivatives)
-        return errors_at(place.at, self.box, slopes, place.rest)
+        return Errors(*errors_at(place.at, self.box, slopes, place.rest))
 
-    def run(self) -> Outcome:
-        """Iterate until the end.
+    def run(self) -> InteriorEnding:
+        """InteriorIterate until the end.
 
         Raises:
             CallableError: the Hessian has no value.
@@ -132,21 +136,21 @@ class InteriorPoint:
         length, kind, tiny = 0.0, "", 0
         while True:
             if self._seen(self, length, kind):
-                return Outcome.STOPPED
+                return InteriorEnding.STOPPED
             errors = self.errors()
             if self._small(errors):
-                return Outcome.SMALL
+                return InteriorEnding.SMALL
             if self.barrier.update(errors):
                 self._new_filter()
             taken = self._step()
             if taken is None:
-                return Outcome.STUCK
+                return InteriorEnding.STUCK
             length, kind = taken.length, taken.kind
             size = float((np.abs(taken.step.v) / (1.0 + np.abs(self.place.at.v))).max())
             self._advance(taken)
             tiny = tiny + 1 if size * length < _TINY else 0
             if tiny and not self.barrier.lower() and tiny > 1:
-                return Outcome.STUCK
+                return InteriorEnding.STUCK
 
     def _small(self, errors: Errors) -> bool:
         worst = max(errors.dual, errors.primal, errors.largest / errors.scale)
@@ -155,21 +159,25 @@ class InteriorPoint:
     def _step(self) -> Taken | None:
         """The next step that is taken; None where none helps."""
         place, barrier = self.place, self.barrier
-        self.hessian = self.functions.hessian(place.point, place.at.y)
         try:
-            self.newton.factorise(place, self.hessian, barrier.mu)
+            self.newton.factorise(place, self.hessian_here(), barrier.mu)
             if barrier.free:
                 self._choose()
-            while True:
-                step, slope = self.newton.step(barrier.mu)
-                taken = self.search.along(place, step, slope, barrier.mu)
-                if taken is not None:
-                    return taken
-                if not barrier.lower():
-                    return None
-                self._new_filter()
+            step, slope = self.newton.step(barrier.mu)
+            return self.search.along(place, step, slope, barrier.mu)
         except SingularError:
             return None
+
+    def hessian_here(self) -> SparseMatrix:
+        """Of the Lagrangian, worked out once for a place.
+
+        Raises:
+            CallableError: it has no value.
+        """
+        if self._of is not self.place:
+            self.hessian = self.functions.hessian(self.place.point, self.place.at.y)
+            self._of = self.place
+        return self.hessian
 
     def _choose(self) -> None:
         """μ from the step for none."""
@@ -190,21 +198,27 @@ class InteriorPoint:
         box, n = self.box, len(point.x)
         v = np.concatenate([point.x, slacks])
         old = self.place.at
-        at = Iterate(v, np.zeros(len(point.c)), np.minimum(old.low, 1e3), np.minimum(old.high, 1e3))
+        at = InteriorIterate(
+            v, np.zeros(len(point.c)), np.minimum(old.low, 1e3), np.minimum(old.high, 1e3)
+        )
         keep_near(at, box, self.barrier.mu, 10.0)
         self.place = Place(at, point, point.c - v[n:])
         at.y[:] = self.newton.first_multipliers(self.place, self.hessian)
 
 
-def make_box(functions: Functions, tolerance: float) -> Box:
+def make_box(functions: Functions, tolerance: float) -> InteriorLimits:
     """Limits of variables and slacks. Those of slacks are a little wider than asked for, so that
     there is an interior; the variables' are not: beyond them functions may have no value."""
     fixed = functions.x_lower == functions.x_upper
     equal = functions.c_lower == functions.c_upper
     wider = min(_RELAXED, 1e-2 * tolerance)
-    lower = functions.c_lower - np.where(equal, 0.0, wider * np.maximum(1.0, np.abs(functions.c_lower)))
-    upper = functions.c_upper + np.where(equal, 0.0, wider * np.maximum(1.0, np.abs(functions.c_upper)))
-    return Box(
+    lower = functions.c_lower - np.where(
+        equal, 0.0, wider * np.maximum(1.0, np.abs(functions.c_lower))
+    )
+    upper = functions.c_upper + np.where(
+        equal, 0.0, wider * np.maximum(1.0, np.abs(functions.c_upper))
+    )
+    return InteriorLimits(
         np.concatenate([functions.x_lower, lower]),
         np.concatenate([functions.x_upper, upper]),
         np.concatenate([fixed, equal]),

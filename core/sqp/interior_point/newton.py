@@ -11,13 +11,13 @@ from ..algebra.linear import SaddlePatterns
 from ..algebra.matrices import SparseMatrix, Sparsity
 from ..problem.evaluation import Point
 from .direction import (
-    Derivatives,
+    FirstDerivatives,
     barrier_slopes,
     lagrangian_slopes,
     step_from,
 )
-from .iterate import Box, Iterate
-from .system import System, Weights
+from .iterate import InteriorIterate, InteriorLimits
+from .system import BarrierSystem, SystemWeights
 
 _FIRST_SHIFT, _LEAST_SHIFT, _LARGEST_SHIFT = 1e-4, 1e-20, 1e40
 _FAST, _GROW, _SHRINK = 100.0, 8.0, 1.0 / 3.0
@@ -40,15 +40,15 @@ class Place:
         rest: (m,) c − s.
     """
 
-    at: Iterate
+    at: InteriorIterate
     point: Point
     rest: FloatArray
 
     @property
-    def derivatives(self) -> Derivatives:
+    def derivatives(self) -> FirstDerivatives:
         """As compiled code takes them."""
         J = self.point.J
-        return Derivatives(self.point.g, J.pattern.starts, J.pattern.rows, J.data)
+        return FirstDerivatives(self.point.g, J.pattern.starts, J.pattern.rows, J.data)
 
 
 class Newton:
@@ -62,17 +62,17 @@ class Newton:
         shift: by which the last Hessian's diagonal was raised.
     """
 
-    def __init__(self, patterns: SaddlePatterns, box: Box) -> None:
+    def __init__(self, patterns: SaddlePatterns, box: InteriorLimits) -> None:
         self._patterns = patterns
         self._box = box
-        self._known: tuple[Sparsity, Sparsity, System] | None = None
+        self._known: tuple[Sparsity, Sparsity, BarrierSystem] | None = None
         self._last_shift = 0.0
         self.shift = 0.0
 
-    def _system_of(self, H: Sparsity, A: Sparsity) -> System:
+    def _system_of(self, H: Sparsity, A: Sparsity) -> BarrierSystem:
         if self._known is None or self._known[0] is not H or self._known[1] is not A:
             held: BoolArray = self._box.held[: H.shape[0]]
-            self._known = H, A, System(self._patterns.of(H, A), H, A, held)
+            self._known = H, A, BarrierSystem(self._patterns.of(H, A), H, A, held)
         return self._known[2]
 
     def factorise(self, place: Place, H: SparseMatrix, mu: float) -> None:
@@ -96,7 +96,6 @@ class Newton:
         self._again = right
         if right(0.0):
             return
-        self._dependent = _DEPENDENT * mu**0.25
         shift = self._last_shift * _SHRINK if self._last_shift else _FIRST_SHIFT
         shift = max(shift, _LEAST_SHIFT)
         while not right(shift):
@@ -108,9 +107,9 @@ class Newton:
     @property
     def plain(self) -> FloatArray:
         """Slopes (n + m,) of the Lagrangian without the barrier."""
-        return lagrangian_slopes(self._place.at, self._place.derivatives)
+        return np.asarray(lagrangian_slopes(self._place.at, self._place.derivatives))
 
-    def step(self, mu: float, rest: FloatArray | None = None) -> tuple[Iterate, float]:
+    def step(self, mu: float, rest: FloatArray | None = None) -> tuple[InteriorIterate, float]:
         """The step for μ, and the slope of objective and barrier along it.
 
         Args:
@@ -127,9 +126,10 @@ class Newton:
         if not np.isfinite(left):
             raise SingularError("the system has no finite solution")
         sigma = self._system.weights.sigma
-        return step_from(
+        step, along = step_from(
             found, sigma, slope, wanted, place.derivatives, place.at, self._box, mu
         )
+        return step, along
 
     def first_multipliers(self, place: Place, H: SparseMatrix) -> FloatArray:
         """Multipliers (m,) of the rows that leave least of the slopes, in least squares; zeros
@@ -146,7 +146,7 @@ class Newton:
         ends = np.isfinite(box.lower[n:]) | np.isfinite(box.upper[n:])
         exact = np.ones(n + m)
         exact[n:] = np.where(box.held[n:], 0.0, -1.0)
-        weights = Weights(np.ones(n + m), ends.astype(np.float64), exact)
+        weights = SystemWeights(np.ones(n + m), ends.astype(np.float64), exact)
         zero = SparseMatrix(H.pattern, np.zeros(H.pattern.size))
         if system.factorise_weighted(zero, J, weights) != n:
             return np.zeros(m)

@@ -65,7 +65,7 @@ def restored(
     barrier = Barrier(BarrierKind.MONOTONE, _LEAST_MU, first_mu)
     inner = InteriorPoint(elastic, patterns, outer.tolerance, barrier, seen)
     try:
-        inner.start(elastic.begin(place.point, place.at.v[n:], first_mu))
+        inner.start(elastic.begin(place.point, place.at.v[n:], first_mu), first_theta)
         inner.run()
     except CallableError:
         return None

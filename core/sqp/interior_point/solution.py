@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import FloatArray
 from ..options import Options
 from ..problem.evaluation import Point
 from ..problem.hessians import HessianSource
 from ..problem.scaled import ScaledProblem
-from ..progress import Progress
+from ..progress import SolutionProgress
 from ..workspace import Workspace
 from .barrier import Barrier, BarrierKind
 from .functions import UserFunctions
 from .last_digits import LastDigits
-from .method import InteriorPoint, Outcome
+from .method import InteriorEnding, InteriorPoint
 from .newton import SingularError
 from .restoration import curvature_of, restored
 
@@ -24,7 +23,7 @@ _LEAST_MU = 1e-3
 _RESTORATIONS = 10
 _PATIENCE = 100
 """Iterations in a row without smaller residuals after which the method gives up."""
-_SHARE = 0.5
+_SHARE = 0.8
 """Of all iterations after which it gives up; the rest is left to the other method."""
 _FAR = 1e8
 """By which variables may grow; unbounded problems are left to the other method."""
@@ -47,7 +46,7 @@ class InteriorSolution:
         hessian: HessianSource,
         workspace: Workspace,
         options: Options,
-        progress: Progress,
+        progress: SolutionProgress,
     ) -> None:
         self._problem = problem
         self._hessian = hessian
@@ -65,7 +64,7 @@ class InteriorSolution:
         """Begin at a point with derivatives; returns where the method gives up.
 
         Raises:
-            End: when the solution ends.
+            SolutionEnd: when the solution ends.
             CallableError: nothing has a value where it begins, or the Hessian has none.
         """
         self._progress.visit(point, np.zeros(self._problem.nlp.m), 0.0, "", 0.0)
@@ -86,7 +85,9 @@ class InteriorSolution:
         for _ in range(_RESTORATIONS):
             outcome = method.run()
             self._progress.trouble = method.search.trouble
-            if outcome is not Outcome.STUCK or not self._restored(method):
+            if outcome is InteriorEnding.SMALL:
+                self._try(method, last=True)
+            if outcome is not InteriorEnding.STUCK or not self._restored(method):
                 return
 
     def _seen(self, method: InteriorPoint, length: float, kind: str) -> bool:
@@ -104,12 +105,25 @@ class InteriorSolution:
         if worst > self._try_at:
             return self._hopeless(method, worst)
         self._try_at = _TRIED_AGAIN * worst
-        H = self._hessian.matrix(point, y)
-        found = self._digits.of(place, method.box, H)
+        self._try(method, last=False)
+        return False
+
+    def _try(self, method: InteriorPoint, last: bool) -> None:
+        """Try for the last digits.
+
+        Args:
+            last: whether the interior point itself gets no further.
+
+        Raises:
+            SolutionEnd: there they are.
+        """
+        place, progress = method.place, self._progress
+        found = self._digits.of(place, method.box, method.hessian_here())
+        if found is None and last:
+            found = self._digits.snapped(place, method.box)
         if found is not None:
             progress.iterations += 1
             progress.visit(found.point, found.multipliers, 1.0, "active_set", 0.0)
-        return False
 
     def _hopeless(self, method: InteriorPoint, worst: float) -> bool:
         """Whether to give up: residuals have not got smaller for long, most iterations are used

@@ -19,13 +19,13 @@ from ...arrays import BoolArray, FloatArray
 from ..algebra.ldl import Factors, factorise
 from ..algebra.linear import EntryIndices, SaddleMatrices, SaddlePattern, refined
 from ..algebra.matrices import SparseMatrix, Sparsity
-from .iterate import Box, Iterate
+from .iterate import InteriorIterate, InteriorLimits
 
-_REGULARISATION = 1e-8
+_REGULARISATION = 1e-10
 _EXACT = 1e-12
 
 
-class Weights(NamedTuple):
+class SystemWeights(NamedTuple):
     """What limits add to the system.
 
     Args:
@@ -39,7 +39,7 @@ class Weights(NamedTuple):
     exact: FloatArray
 
 
-class System:
+class BarrierSystem:
     """Systems of one pair of patterns.
 
     Args:
@@ -54,7 +54,13 @@ class System:
         self._in_A = ~held[A.columns] if held.any() else None
 
     def factorise(
-        self, H: SparseMatrix, A: SparseMatrix, at: Iterate, box: Box, shift: float, slack: float
+        self,
+        H: SparseMatrix,
+        A: SparseMatrix,
+        at: InteriorIterate,
+        box: InteriorLimits,
+        shift: float,
+        slack: float,
     ) -> int:
         """Factorise; the number of positive pivots, of which as many as variables are right. -1
         where a pivot is zero or not finite.
@@ -67,7 +73,7 @@ class System:
         """
         return self.factorise_weighted(H, A, weights_of(at, box, shift, slack))
 
-    def factorise_weighted(self, H: SparseMatrix, A: SparseMatrix, weights: Weights) -> int:
+    def factorise_weighted(self, H: SparseMatrix, A: SparseMatrix, weights: SystemWeights) -> int:
         """The same with weights as given."""
         self.weights = weights
         in_H, rows = H.data, A.data * self.weights.units[A.pattern.rows]
@@ -78,7 +84,9 @@ class System:
         factors, places = self._pattern.factors, self._pattern.places
         return int(_factorised(self._matrices, factors, places, self.weights.exact))
 
-    def solve(self, slope: FloatArray, rest: FloatArray, box: Box) -> tuple[FloatArray, float]:
+    def solve(
+        self, slope: FloatArray, rest: FloatArray, box: InteriorLimits
+    ) -> tuple[FloatArray, float]:
         """The steps of variables and multipliers (n + m,), and what is left of the right side
         beside its size.
 
@@ -96,7 +104,9 @@ class System:
 
 
 @njit(cache=True, error_model="numpy")
-def weights_of(at: Iterate, box: Box, shift: float, slack: float) -> Weights:
+def weights_of(
+    at: InteriorIterate, box: InteriorLimits, shift: float, slack: float
+) -> SystemWeights:
     k, m = len(at.v), len(at.y)
     n = k - m
     sigma, exact, units = np.full(k, shift), np.zeros(k), np.ones(m)
@@ -115,11 +125,13 @@ def weights_of(at: Iterate, box: Box, shift: float, slack: float) -> Weights:
             exact[j] = -1.0 - slack
         else:
             exact[j] = -1.0 / sigma[j] - slack
-    return Weights(sigma, units, exact)
+    return SystemWeights(sigma, units, exact)
 
 
 @njit(cache=True, error_model="numpy")
-def right_side(weights: Weights, slope: FloatArray, rest: FloatArray, box: Box) -> FloatArray:
+def right_side(
+    weights: SystemWeights, slope: FloatArray, rest: FloatArray, box: InteriorLimits
+) -> FloatArray:
     right = np.empty(len(slope))
     n = len(slope) - len(rest)
     for j in range(n):
@@ -140,10 +152,7 @@ def _factorised(
     matrices: SaddleMatrices, factors: Factors, places: EntryIndices, exact: FloatArray
 ) -> int:
     n = len(matrices.P_starts) - 1
-    largest = 1.0
-    for k in range(len(matrices.P)):
-        largest = max(largest, abs(matrices.P[k]))
-    delta = _REGULARISATION * min(largest, 1e3)
+    delta = _REGULARISATION
     data = np.zeros(len(factors.rows))
     for i in range(len(exact)):
         data[places.diagonal[i]] = exact[i] + (delta if i < n else -delta)
@@ -155,4 +164,4 @@ def _factorised(
                 data[places.diagonal[j]] += matrices.P[k]
     for k in range(len(matrices.A)):
         data[places.A[k]] = matrices.A[k]
-    return factorise(factors, data)
+    return int(factorise(factors, data))

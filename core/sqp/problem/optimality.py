@@ -11,6 +11,8 @@ from ...arrays import BoolArray, FloatArray, IntArray
 from ..algebra.matrices import SparseMatrix
 
 _ON_BOUND = 1e-8
+_PRODUCT = 1e-8
+"""Slope times distance from a bound up to which the bound's multiplier is the slope."""
 _ROUNDING = 1e-14
 Bounds = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
@@ -85,8 +87,10 @@ def residuals(
     )
     y = multipliers * rows / factor
     nu = bound_multipliers(x, slope, x_lower, x_upper)
-    measured = _measured(x, values, slope, terms, row_terms, nu, y, x_lower, x_upper, c_lower, c_upper)
-    return OptimalityResiduals(*measured, nu)
+    stationarity, complementarity, violation, relative, rounding = _measured(
+        x, values, slope, terms, row_terms, nu, y, x_lower, x_upper, c_lower, c_upper
+    )
+    return OptimalityResiduals(stationarity, complementarity, violation, relative, rounding, nu)
 
 
 @njit(cache=True, error_model="numpy")
@@ -166,11 +170,15 @@ def at_bounds(x: FloatArray, lower: FloatArray, upper: FloatArray) -> tuple[Bool
 def bound_multipliers(
     x: FloatArray, slope: FloatArray, lower: FloatArray, upper: FloatArray
 ) -> FloatArray:
-    """The multipliers of the bounds that leave least of the Lagrangian's slope.
+    """The multipliers of the bounds that leave least of the Lagrangian's slope: of bounds that x is
+    on, or near to in proportion to the slope, as interior points end.
 
     Args:
         slope: (n,) of the Lagrangian without bounds.
     """
     at_lower, at_upper = at_bounds(x, lower, upper)
+    reach = np.minimum(_PRODUCT / np.maximum(np.abs(slope), _PRODUCT), 1.0)
+    at_lower |= x - lower <= reach
+    at_upper |= upper - x <= reach
     active = (at_lower & (slope > 0)) | (at_upper & (slope < 0))
     return np.where(active, -slope, 0.0)

@@ -72,9 +72,7 @@ class ScaledProblem:
     def residuals(self, point: Point, multipliers: FloatArray) -> OptimalityResiduals:
         """How far a point is from a solution, unscaled; multipliers are the scaled ones."""
         factors = self.evaluation.objective_factor, self.evaluation.constraint_factors
-        return residuals(
-            point.x, point.c, point.g, point.J, multipliers, self.nlp.bounds, factors
-        )
+        return residuals(point.x, point.c, point.g, point.J, multipliers, self.nlp.bounds, factors)
 
     def result_residuals(
         self, x: FloatArray, multipliers: FloatArray

@@ -8,10 +8,10 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..filter import Filter
-from .model import Model
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from ..problem.scaled import ScaledProblem
+from .model import Model
 from .restoration import Limits, Restoration, RestorationOutcome, Restored
 from .search import FilterStep, Search
 

@@ -23,7 +23,7 @@ from ..problem.evaluation import Point
 from ..problem.hessians import HessianSource
 from ..problem.optimality import OptimalityResiduals
 from ..problem.scaled import ScaledProblem
-from ..progress import End, Progress
+from ..progress import SolutionEnd, SolutionProgress
 from ..qp.problem import QpSolution
 from ..verdict import Ending, nothing_to_gain
 from ..workspace import Workspace
@@ -59,7 +59,7 @@ class Sequential:
         hessian: HessianSource,
         workspace: Workspace,
         options: Options,
-        progress: Progress,
+        progress: SolutionProgress,
     ) -> None:
         self.nlp = problem.nlp
         self.options = options
@@ -77,7 +77,7 @@ class Sequential:
         """Begin at a point with derivatives.
 
         Raises:
-            End: when the solution ends.
+            SolutionEnd: when the solution ends.
             CallableError: the Hessian has no value.
             NoSubproblemError: no back end solves a subproblem.
         """
@@ -197,7 +197,7 @@ class Sequential:
         """A step to where feasibility is restored as far as the filter wants it.
 
         Raises:
-            End: there is none.
+            SolutionEnd: there is none.
         """
         if not self.nlp.m:
             return self._last_step(point)
@@ -209,17 +209,19 @@ class Sequential:
         stationary = found.outcome is RestorationOutcome.STATIONARY
         at = self.problem.residuals(found.point, self.multipliers)
         if at.violation <= self.options.tolerance:
-            raise End(Ending.NO_STEP)
+            raise SolutionEnd(Ending.NO_STEP)
         theta = self.problem.theta(self.progress.best.point.c)
         if theta >= (1.0 - _LESS) * self.problem.theta(found.point.c):
             if stationary:
                 self.progress.best = self.progress.as_best(found.point, self.multipliers, at)
-            raise End(Ending.STATIONARY_VIOLATION if stationary else Ending.NO_STEP)
+            raise SolutionEnd(Ending.STATIONARY_VIOLATION if stationary else Ending.NO_STEP)
         self.restarts += 1  # points seen on the way were less violated
         if self.options.step_box is not None or self.restarts > _RESTARTS:
-            raise End(Ending.NO_STEP)
+            raise SolutionEnd(Ending.NO_STEP)
         self.filter.entries.clear()
-        return FilterStep(self.progress.best.point, 1.0, self.progress.best.multipliers, "restoration")
+        return FilterStep(
+            self.progress.best.point, 1.0, self.progress.best.multipliers, "restoration"
+        )
 
     # ---------------------------------------------------------------------- the end
 
@@ -227,20 +229,20 @@ class Sequential:
         """Steepest descent, where no model's step helps any more and it promises to gain something.
 
         Raises:
-            End: it does not help either.
+            SolutionEnd: it does not help either.
         """
         self._refine_best()
         tolerance = self.options.tolerance
         idle = nothing_to_gain(self.progress.gain, self.progress.best.objective, tolerance)
         self.descents += 1
         if idle or self.descents > _DESCENTS or self.problem.violation(point) > tolerance:
-            raise End(Ending.NO_STEP)
+            raise SolutionEnd(Ending.NO_STEP)
         diagonal = own_curvature(point, self.problem, self.multipliers)
         found = self._descent(point, diagonal, self.model.limits(point.x, self.progress.iterations))
         step = None if found is None else self.search.along(point, found, found.y, "descent")
         if step is None or step.point is point:
             self.progress.trouble = self.search.trouble or self.progress.trouble
-            raise End(Ending.NO_STEP)
+            raise SolutionEnd(Ending.NO_STEP)
         self.hessian.restart(diagonal)
         self.model.forget()
         self.failures = self.stalls = 0
@@ -262,7 +264,7 @@ class Sequential:
         gained there.
 
         Raises:
-            End: with them it is a solution.
+            SolutionEnd: with them it is a solution.
         """
         best = self.progress.best
         own = own_curvature(best.point, self.problem, best.multipliers)
@@ -277,4 +279,4 @@ class Sequential:
                 fall = -float(best.point.g @ found.d + 0.5 * (own * found.d) @ found.d)
                 self.progress.gain = fall / self.problem.evaluation.objective_factor
         if self.progress.best.at.within(self.options.tolerance):
-            raise End(Ending.CONVERGED)
+            raise SolutionEnd(Ending.CONVERGED)

@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import FloatArray
-from .convexify import ActiveSet, ConvexModel, raised
-from .damping import Damping
 from ..filter import NO_VIOLATION
 from ..options import StepBox, box_limits
 from ..problem import violation
@@ -18,6 +16,8 @@ from ..problem.optimality import at_bounds, bound_multipliers, lagrangian_slope
 from ..problem.scaled import ScaledProblem
 from ..qp.problem import QpSolution, QpStatus, QuadraticProgram, in_units
 from ..workspace import Workspace
+from .convexify import ActiveSet, ConvexModel, raised
+from .damping import Damping
 
 _FIRST_RADIUS = 1e3
 _DROP_RADIUS = 1e30

@@ -14,12 +14,12 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..algebra.matrices import SparseMatrix, Sparsity
-from .elastic import Elastic
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from ..problem.optimality import at_bounds
 from ..problem.scaled import ScaledProblem
 from ..qp.problem import QpSolution, QpStatus, QuadraticProgram
+from .elastic import Elastic
 
 Limits = tuple[FloatArray, FloatArray]
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..filter import Filter
-from .model import Model
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from ..problem.scaled import ScaledProblem
 from ..qp.problem import QpSolution
+from .model import Model
 
 _HALVINGS = 30
 _NEAR_MISSES = 12

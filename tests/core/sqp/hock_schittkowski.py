@@ -11,7 +11,8 @@ from math import inf, pi
 from math import log as ln
 from math import sqrt as root
 
-from .jets import cos, exp, log, sin
+from flyby.validation.trajectories.jets import cos, exp, log, sin
+
 from .problem import at_least, equal, problem
 
 

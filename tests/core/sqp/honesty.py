@@ -9,6 +9,8 @@ from scipy import optimize, sparse
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, Result, Status, solve
 
+METHOD = "auto"
+"""The method where a test names none."""
 _REACH = 0.1
 """Share of a variable's size, but at least of 1, within which a violation is stationary."""
 _LEFT = 1e-2
@@ -17,7 +19,7 @@ _LEFT = 1e-2
 
 def solved(nlp: NLP, x0, *, tolerance: float = 1e-6, **options) -> Result:
     """The result of `solve`, which does not lie."""
-    result = solve(nlp, x0, tolerance=tolerance, **options)
+    result = solve(nlp, x0, tolerance=tolerance, **{"method": METHOD, **options})
     assert_honest(nlp, result, tolerance)
     return result
 

@@ -20,8 +20,7 @@ from numpy.typing import ArrayLike
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-
-from .jets import Jet, variables
+from flyby.validation.trajectories.jets import Jet, variables
 
 
 class Row(NamedTuple):

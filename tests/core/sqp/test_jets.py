@@ -9,8 +9,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from . import jets
-from .jets import Jet, arctan, cos, erf, exp, log, sin, sqrt, tan, tanh, variables
+from flyby.validation.trajectories import jets
+from flyby.validation.trajectories.jets import (
+    Jet,
+    arctan,
+    cos,
+    erf,
+    exp,
+    log,
+    sin,
+    sqrt,
+    tan,
+    tanh,
+    variables,
+)
 
 FORMULAS: dict[str, Callable] = {
     "sums": lambda x, y: 3 + x - y - (2 - x) + (+y),

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from flyby.core.sqp import NLP, Result, Status, scattered_starts, solve_from
+from flyby.validation.trajectories.jets import cos, log
 
 from .honesty import assert_honest
-from .jets import cos, log
 from .problem import at_least, at_most, nlp_from
 
 

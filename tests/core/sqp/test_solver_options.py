@@ -9,9 +9,9 @@ import pytest
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, HessianKind, Iteration, NlpError, Status
+from flyby.validation.trajectories.jets import exp, sin
 
 from .honesty import solved
-from .jets import exp, sin
 from .known_points import known_point
 from .problem import at_least, at_most, equal, nlp_from
 

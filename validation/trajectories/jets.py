@@ -1,18 +1,19 @@
-"""Numbers with first and second derivatives: how the tests differentiate their problems.
+"""Numbers with first and second derivatives: how stated problems are differentiated.
 
-A jet carries a value, its gradient (n,) and its Hessian (n, n) with respect to n variables;
-arithmetic and the functions below follow the chain rule. The functions take plain numbers too, so
-that one formula serves for values and for derivatives.
+A jet carries a value, its gradient (n,) and its Hessian (n, n) with respect to n variables, or k of
+each at once: (k,), (n, k), (n, n, k). Arithmetic and the functions below follow the chain rule. The
+functions take plain numbers too, so that one formula serves for values and for derivatives.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from scipy import special
 
-from flyby.core.arrays import FloatArray
+from ...core.arrays import FloatArray
 
 
 class Jet:
@@ -21,7 +22,9 @@ class Jet:
     __slots__ = ("gradient", "hessian", "value")
     __array_ufunc__ = None  # numpy's numbers leave the arithmetic to this class
 
-    def __init__(self, value: float, gradient: FloatArray, hessian: FloatArray) -> None:
+    def __init__(
+        self, value: float | FloatArray, gradient: FloatArray, hessian: FloatArray
+    ) -> None:
         self.value = value
         self.gradient = gradient
         self.hessian = hessian
@@ -37,11 +40,12 @@ class Jet:
 
     def __mul__(self, other: Jet | float) -> Jet:
         if isinstance(other, Jet):
-            cross = self.gradient[:, None] * other.gradient
+            cross = self.gradient[:, None] * other.gradient[None]
+            cross = cross + cross.swapaxes(0, 1)
             return Jet(
                 self.value * other.value,
                 self.value * other.gradient + other.value * self.gradient,
-                self.value * other.hessian + other.value * self.hessian + cross + cross.T,
+                self.value * other.hessian + other.value * self.hessian + cross,
             )
         return Jet(self.value * other, self.gradient * other, self.hessian * other)
 
@@ -59,7 +63,7 @@ class Jet:
 
     def __pow__(self, power: Jet | float) -> Jet:
         if isinstance(power, Jet):
-            return exp(power * log(self))
+            return _jet(exp(power * log(self)))
         if power == 1:
             return self
         u, p = np.float64(self.value), power
@@ -76,7 +80,12 @@ class Jet:
         return self**-1.0 * other
 
     def __rpow__(self, base: float) -> Jet:
-        return exp(self * np.log(base))
+        return _jet(exp(self * np.log(base)))
+
+
+def _jet(value: Any) -> Jet:
+    assert isinstance(value, Jet)
+    return value
 
 
 def variables(x: Sequence[float] | FloatArray) -> list[Jet]:
@@ -86,20 +95,22 @@ def variables(x: Sequence[float] | FloatArray) -> list[Jet]:
     return [Jet(float(value), row, flat) for value, row in zip(x, np.eye(n), strict=True)]
 
 
-def _chain(inner: Jet, value: float, first: float, second: float) -> Jet:
+def _chain(inner: Jet, value: Any, first: Any, second: Any) -> Jet:
     slope = inner.gradient
-    return Jet(value, first * slope, first * inner.hessian + second * (slope[:, None] * slope))
+    return Jet(
+        value, first * slope, first * inner.hessian + second * (slope[:, None] * slope[None])
+    )
 
 
 def _lifted(
-    function: Callable[[float], float],
-    first: Callable[[float], float],
-    second: Callable[[float], float],
+    function: Callable[[Any], Any],
+    first: Callable[[Any], Any],
+    second: Callable[[Any], Any],
     name: str,
-) -> Callable:
+) -> Callable[[Any], Any]:
     """A function of jets and of numbers, from its derivatives."""
 
-    def lifted(x):
+    def lifted(x: Any) -> Any:
         if isinstance(x, Jet):
             u = np.float64(x.value)
             return _chain(x, function(u), first(u), second(u))
@@ -109,15 +120,15 @@ def _lifted(
     return lifted
 
 
-def _tan_slope(u: float) -> float:
+def _tan_slope(u: Any) -> Any:
     return 1 + np.tan(u) ** 2
 
 
-def _tanh_slope(u: float) -> float:
+def _tanh_slope(u: Any) -> Any:
     return 1 - np.tanh(u) ** 2
 
 
-def _bell(u: float) -> float:
+def _bell(u: Any) -> Any:
     """Derivative of the error function."""
     return 2 / np.sqrt(np.pi) * np.exp(-(u**2))
 

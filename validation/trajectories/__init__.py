@@ -1,0 +1,1 @@
+"""Trajectory problems with known optima, stated as formulas."""
