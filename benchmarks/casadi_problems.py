@@ -14,8 +14,10 @@ from banded import BLOCK, EFFORT, RIPPLE, STATES, WAVES, Banded
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
 from flyby.validation.textbook import Avoidance, DoubleIntegrator, PointMass, Scheme
+from flyby.validation.trajectories.separable import Separable, Terms
 
 Expressions = dict[str, Any]
+ca.GlobalOptions.setNumpyMode(-1)  # numpy's functions of symbols give symbols
 
 
 def cubic() -> Expressions:
@@ -82,6 +84,21 @@ def banded(problem: Banded) -> Expressions:
     driven = ca.DM(problem.A) @ x[:, :-1] + ca.DM(problem.B) @ u[:, :-1]
     driven += WAVES * ca.sin(x[:, :-1])
     return {"x": w, "f": f, "g": ca.vertcat(ca.vec(x[:, 1:] - driven), ca.sum1(x**2).T / 2)}
+
+
+def separable(problem: Separable) -> Expressions:
+    """A problem of formulas at places."""
+    w = ca.SX.sym("w", problem.n)
+
+    def at_places(terms: Terms) -> list[Any]:
+        places = np.atleast_2d(terms.places)
+        found = terms.formula(*(w[column.tolist()] for column in places.T))
+        rows = found if isinstance(found, list) else [found]
+        return [ca.SX(row) * ca.SX.ones(len(places), 1) for row in rows]
+
+    f = sum(ca.sum1(row) for terms in problem.objective_terms for row in at_places(terms))
+    rows = [row for terms in problem.row_terms for row in at_places(terms)]
+    return {"x": w, "f": f, "g": ca.vertcat(*rows)}
 
 
 def checked(expressions: Expressions, nlp: NLP, x: FloatArray) -> Expressions:

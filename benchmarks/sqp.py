@@ -1,6 +1,7 @@
-"""The SQP solver beside IPOPT: CPU time, iterations, objective, violation.
+"""The solver beside IPOPT: CPU time, iterations, objective, violation.
 
     python benchmarks/sqp.py [--json] [--case double-integrator-400]
+                             [--method auto|interior_point|sqp]
                              [--qp clarabel|osqp|piqp|interior_point]
 
 Without ``--case``, those that take a few minutes together.
@@ -48,17 +49,29 @@ from ipopt import Ipopt, IpoptResult, warm_options
 from report import Figure, main
 
 from flyby.core.arrays import FloatArray
-from flyby.core.sqp import NLP, BackendKind, Result, solve
+from flyby.core.sqp import NLP, BackendKind, Result, SolverMethod, solve
 from flyby.validation.textbook import (
     CUBIC_START,
     GARDEN,
+    MAZE,
     Avoidance,
     DoubleIntegrator,
     PointMass,
     Scene,
     cubic,
 )
+from flyby.validation.trajectories.cops import COPS
+from flyby.validation.trajectories.mechanics import (
+    MECHANICS,
+    cart_pole,
+    double_pendulum,
+    two_link_arm,
+)
+from flyby.validation.trajectories.stated import StatedTrajectory
 
+THREE_DISCS = Scene(
+    start=(1.0, 1.0), goal=(9.0, 9.0), circles=((3.2, 2.6, 1.1), (5.2, 5.4, 1.2), (7.6, 7.0, 0.9))
+)
 PEER, SAME = "ipopt", "ipopt, same callables"
 TOLERANCE = 1e-6
 REPEATS = 5
@@ -108,11 +121,16 @@ def banded_task(nodes: int, seed: int = 0, shift: float = 0.0) -> Task:
     return _task(problem.nlp(), casadi_problems.banded(problem), np.zeros(problem.n))
 
 
+def stated_task(stated: StatedTrajectory) -> Task:
+    """A trajectory problem from its start."""
+    return _task(stated.problem.nlp(), casadi_problems.separable(stated.problem), stated.start)
+
+
 def _task(nlp: NLP, expressions: dict[str, Any], x0: FloatArray) -> Task:
     return Task(nlp, casadi_problems.checked(expressions, nlp, x0), x0)
 
 
-SIZES = (40, 100, 200, 400, 1600)
+SIZES = (40, 100, 200, 400, 1600, 10000)
 SINGLE: dict[str, Callable[[], Task]] = {
     "cubic": cubic_task,
     **{f"double-integrator-{n}": lambda n=n: integrator_task(n) for n in SIZES},
@@ -122,18 +140,22 @@ SINGLE: dict[str, Callable[[], Task]] = {
         for n in (40, 100)
     },
     **{f"banded-{n}": lambda n=n: banded_task(n) for n in (40, 100, 400, 1600)},
+    "three-discs-80": lambda: mass_task(80, scene=THREE_DISCS),
+    "maze-100": lambda: mass_task(100, scene=MAZE),
+    **{f"{k}-41": lambda k=k: stated_task(MECHANICS[k](41)) for k in MECHANICS},
+    **{f"{k}-101": lambda k=k: stated_task(COPS[k](101)) for k in COPS},
 }
 
 
 # ------------------------------------------------------------------------- one problem
 
 
-def measure_single(case: str, qp: str) -> Iterator[Figure]:
+def measure_single(case: str, how: dict[str, str]) -> Iterator[Figure]:
     """Figures of one problem from one start."""
     task = SINGLE[case]()
     best, same = CasadiIpopt(task.nlp, task.expressions, TOLERANCE), _same_callables(task)
     ours, theirs, twin, seconds = _race(
-        lambda: solve(task.nlp, task.x0, tolerance=TOLERANCE, qp=qp),
+        lambda: solve(task.nlp, task.x0, tolerance=TOLERANCE, **how),
         lambda: best.solve(task.x0),
         lambda: same.solve(task.x0),
     )
@@ -195,6 +217,15 @@ STARTED: dict[str, Callable[[], list[Task]]] = {
         f"point-mass-starts-{n}": lambda n=n: [mass_task(n, via=[p]) for p in places(STARTS)]
         for n in (40, 100, 200)
     },
+    "double-pendulum-starts-41": lambda: [
+        stated_task(double_pendulum(41, push)) for push in (-4.0, -1.0, 0.0, 1.0, 4.0)
+    ],
+    "two-link-arm-starts-41": lambda: [
+        stated_task(two_link_arm(41, bend)) for bend in (-2.0, -1.0, 0.0, 1.0, 2.0)
+    ],
+    "cart-pole-starts-41": lambda: [
+        stated_task(cart_pole(41, swing)) for swing in (-0.5, 0.0, 0.5, 1.0, 1.5)
+    ],
     **{
         f"banded-seeds-{n}": lambda n=n: [banded_task(n, seed) for seed in range(STARTS)]
         for n in (100,)
@@ -202,7 +233,7 @@ STARTED: dict[str, Callable[[], list[Task]]] = {
 }
 
 
-def measure_starts(case: str, qp: str) -> Iterator[Figure]:
+def measure_starts(case: str, how: dict[str, str]) -> Iterator[Figure]:
     """Figures over random starts (point mass) or random problems (banded)."""
     ours: list[Result] = []
     theirs: list[IpoptResult] = []
@@ -210,7 +241,7 @@ def measure_starts(case: str, qp: str) -> Iterator[Figure]:
     times: list[tuple[float, float]] = []
     for task in STARTED[case]():
         best, same = CasadiIpopt(task.nlp, task.expressions, TOLERANCE), _same_callables(task)
-        mine, spent = _timed(lambda task=task: solve(task.nlp, task.x0, qp=qp))
+        mine, spent = _timed(lambda task=task: solve(task.nlp, task.x0, **how))
         its, its_spent = _timed(lambda task=task, best=best: best.solve(task.x0))
         _, same_spent = _timed(lambda task=task, same=same: same.solve(task.x0))
         ours.append(mine)
@@ -225,7 +256,7 @@ def measure_starts(case: str, qp: str) -> Iterator[Figure]:
         median = statistics.median(ratio[column] for ratio in ratios)
         spent = statistics.median(t[column] for t in times)
         yield Figure(case, "cpu_ratio", median, "", peer, 1e3 * spent)
-    if case.startswith("point-mass"):
+    if not case.startswith("banded"):
         for name, pick in (("best", min), ("worst", max)):
             mine, its = (pick(r.objective for r in rs if r.success) for rs in (ours, theirs))
             yield Figure(case, name, mine, "", PEER, its)
@@ -271,10 +302,10 @@ RESOLVED = {
 ALL_RESOLVED = "warm-resolve"
 
 
-def measure_resolve(case: str, qp: str) -> Iterator[Figure]:
+def measure_resolve(case: str, how: dict[str, str]) -> Iterator[Figure]:
     """Ratios over problems nearby; ``warm-resolve`` over those of all kinds."""
     chosen = RESOLVED if case == ALL_RESOLVED else {case: RESOLVED[case]}
-    found = [pair for kind, size in chosen.values() for pair in _resolved(kind, size, qp)]
+    found = [pair for kind, size in chosen.values() for pair in _resolved(kind, size, how)]
     for column, peer in enumerate((PEER, SAME)):
         ratios = [ours / theirs[column] for ours, theirs in found]
         spent = 1e3 * statistics.median(theirs[column] for _, theirs in found)
@@ -284,15 +315,17 @@ def measure_resolve(case: str, qp: str) -> Iterator[Figure]:
     yield Figure(case, "cpu_ms", 1e3 * statistics.median(ours for ours, _ in found), "ms")
 
 
-def _resolved(kind: str, size: int, qp: str) -> Iterator[tuple[float, tuple[float, float]]]:
+def _resolved(
+    kind: str, size: int, how: dict[str, str]
+) -> Iterator[tuple[float, tuple[float, float]]]:
     """CPU seconds of ours and of both peers for each perturbation."""
     first, *others = _nearby(kind, size)
-    mine = solve(first.nlp, first.x0, qp=qp)
+    mine = solve(first.nlp, first.x0, **how)
     x = mine.x
     its = CasadiIpopt(first.nlp, first.expressions, TOLERANCE).solve(x)
     for task in others:
         calls: list[Callable[[], Any]] = [
-            lambda task=task: solve(task.nlp, mine.x, qp=qp, warm_start=mine)
+            lambda task=task: solve(task.nlp, mine.x, warm_start=mine, **how)
         ]
         for mu in (None, *MU):
             options = {} if mu is None else warm_options(mu)
@@ -312,30 +345,40 @@ USUAL = (
     "cubic",
     "double-integrator-40",
     "double-integrator-200",
+    "double-integrator-1600",
+    "point-mass-40",
     "point-mass-100",
     "point-mass-200",
+    "three-discs-80",
+    "maze-100",
     "banded-100",
+    *(f"{k}-41" for k in MECHANICS),
+    *(f"{k}-101" for k in COPS),
+    "double-pendulum-starts-41",
+    "two-link-arm-starts-41",
+    "cart-pole-starts-41",
     ALL_RESOLVED,
 )
 
 
-def _measure(qp: str) -> Callable[[str], Iterator[Figure]]:
+def _measure(how: dict[str, str]) -> Callable[[str], Iterator[Figure]]:
     def measure(case: str) -> Iterator[Figure]:
         if case in SINGLE:
-            return measure_single(case, qp)
-        return measure_starts(case, qp) if case in STARTED else measure_resolve(case, qp)
+            return measure_single(case, how)
+        return measure_starts(case, how) if case in STARTED else measure_resolve(case, how)
 
     return measure
 
 
-def _qp_option() -> str:
-    """Takes ``--qp`` out of the command line, whose rest all benchmarks share."""
+def _options() -> dict[str, str]:
+    """Takes ``--qp`` and ``--method`` out of the command line, whose rest all benchmarks share."""
     parser = argparse.ArgumentParser(add_help=False)
     parser.add_argument("--qp", default="clarabel", choices=tuple(BackendKind))
+    parser.add_argument("--method", default="auto", choices=tuple(SolverMethod))
     options, sys.argv[1:] = parser.parse_known_args()
-    return str(options.qp)
+    return vars(options)
 
 
 if __name__ == "__main__":
-    chosen = _qp_option()
+    chosen = _options()
     main(__doc__ or "", _measure(chosen), (*SINGLE, *STARTED, ALL_RESOLVED, *RESOLVED), USUAL)

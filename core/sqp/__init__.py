@@ -1,6 +1,7 @@
-"""Sequential quadratic programming: `NLP`, `solve`, and what goes with them."""
+"""Nonlinear programs: `NLP`, `solve`, and what goes with them."""
 
 from .derivatives import DerivativeCheck, check_derivatives
+from .methods import SolverMethod
 from .multistart import MultiStart, scattered_starts, solve_from
 from .problem.errors import NlpError
 from .problem.hessians import HessianKind
@@ -18,6 +19,7 @@ __all__ = [
     "MultiStart",
     "NlpError",
     "Result",
+    "SolverMethod",
     "Status",
     "check_derivatives",
     "scattered_starts",

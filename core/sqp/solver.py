@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
+from .algebra.dense import LEAST_SIZE, is_dense
 from .interior_point.solution import InteriorSolution
 from .methods import SolverMethod, chosen
 from .options import Callback, Options, StepBox, start_point
@@ -72,7 +73,7 @@ def solve(
     before = None if warm_start is None else warm_start.workspace
     workspace = make_workspace(nlp, make_backends(qp, fallback), before)
     try:
-        return _Solution(nlp, options, kind, workspace, first).run(start)
+        return _Solution(nlp, options, kind, workspace, first, first == method).run(start)
     finally:
         workspace.busy.release()
 
@@ -87,11 +88,13 @@ class _Solution:
         kind: HessianKind,
         workspace: Workspace,
         first: SolverMethod,
+        wished: bool,
     ) -> None:
         self._nlp = nlp
         self._options = options
         self._workspace = workspace
         self._first = first
+        self._wished = wished
         self._used: list[SolverMethod] = []
         self._problem = ScaledProblem(nlp, workspace.jacobian, workspace.hessian)
         self._hessian = make_source(kind, self._problem.evaluation)
@@ -120,7 +123,7 @@ class _Solution:
         """Iterate until the end, which is an exception."""
         parts = (self._problem, self._hessian, self._workspace, self._options, self._progress)
         sequential = Sequential(*parts)
-        if self._first is SolverMethod.INTERIOR_POINT:
+        if self._first is SolverMethod.INTERIOR_POINT and not self._full(point):
             self._used.append(SolverMethod.INTERIOR_POINT)
             InteriorSolution(*parts).run(point)
             self._progress.iterations += 1
@@ -130,6 +133,13 @@ class _Solution:
         self._used.append(SolverMethod.SQP)
         sequential.run(point)
         raise AssertionError("methods end by an exception")
+
+    def _full(self, point: Point) -> bool:
+        """Whether the Hessian has an entry almost everywhere, where the method is not the user's
+        wish: the sparse factorisations of an interior point are no good for it."""
+        if self._wished or self._nlp.n < LEAST_SIZE:
+            return False
+        return is_dense(self._hessian.matrix(point, np.zeros(self._nlp.m)).pattern)
 
     def _result(self, ending: Ending) -> Result:
         """The best point, judged by residuals from the callables in the user's own scale."""

@@ -13,7 +13,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from ...arrays import BoolArray, FloatArray
 from .matrices import SparseMatrix, Sparsity
 
-_LEAST_SIZE = 100
+LEAST_SIZE = 100
 _LEAST_SHARE = 0.3
 _REGULARISATION = 1e-9
 _REFINEMENTS = 20
@@ -23,7 +23,7 @@ _EXACT = 1e-13
 def is_dense(pattern: Sparsity) -> bool:
     """Whether matrices (n, n) of this pattern are better treated as full ones."""
     n = pattern.shape[0]
-    return n >= _LEAST_SIZE and pattern.size >= _LEAST_SHARE * n * n
+    return n >= LEAST_SIZE and pattern.size >= _LEAST_SHARE * n * n
 
 
 def array_of(matrix: SparseMatrix) -> FloatArray:

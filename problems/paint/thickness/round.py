@@ -95,6 +95,7 @@ class Round:
             self.program,
             np.zeros(self.variables.size),
             tolerance=TOLERANCE,
+            method="sqp",  # its iterates are judged, and the box is small
             max_iterations=self.loop.iterations,
             qp=qp,
             callback=told,
