@@ -8,6 +8,7 @@ from .problem.hessians import HessianKind
 from .problem.nlp import NLP
 from .qp.backends import BackendKind
 from .result import Iteration, Result, Status
+from .sensitivities import Sensitivities, sensitivities
 from .solver import solve
 
 __all__ = [
@@ -19,10 +20,12 @@ __all__ = [
     "MultiStart",
     "NlpError",
     "Result",
+    "Sensitivities",
     "SolverMethod",
     "Status",
     "check_derivatives",
     "scattered_starts",
+    "sensitivities",
     "solve",
     "solve_from",
 ]
