@@ -6,7 +6,7 @@ Nonconvex problems have optima that differ more than solvers do: among obstacles
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,6 +22,9 @@ from .problem.nlp import NLP
 from .result import Result
 from .solver import solve
 
+_SAME_OBJECTIVE, _SAME_PLACE = 1e-4, 1e-2
+"""Shares of objective and of a variable's size up to which solutions are one optimum."""
+
 
 @dataclass(frozen=True, slots=True)
 class MultiStart:
@@ -33,11 +36,14 @@ class MultiStart:
             pass.
         best: index of the lowest accepted one. Where none is accepted: the least violated failure,
             or None if there is a certificate.
+        distinct: indices of the accepted ones that are different optima, the lowest first; of those
+            alike the lowest.
     """
 
     results: tuple[Result, ...]
     accepted: tuple[bool, ...]
     best: int | None
+    distinct: tuple[int, ...] = ()
 
     @property
     def result(self) -> Result | None:
@@ -51,9 +57,10 @@ def solve_from(
     *,
     workers: int = 1,
     accept: Callable[[Result], bool] | None = None,
+    patience: int | None = None,
     **options: Any,
 ) -> MultiStart:
-    """Solve a problem from every start.
+    """Solve a problem from every start; in one process, all share what follows from its sparsity.
 
     Args:
         nlp: the problem.
@@ -62,6 +69,8 @@ def solve_from(
             callables go to the workers by inheritance.
         accept: whether a success may be the best: a certificate of the caller's, say. Failures are
             not shown to it.
+        patience: stop when as many starts in a row have found no optimum that is new; None for all
+            starts. With more workers than one it counts whole batches of them.
         options: of `solve`.
 
     Raises:
@@ -74,13 +83,56 @@ def solve_from(
     if not points:
         raise NlpError("starts is empty")
     whole_number("workers", workers, 1)
-    results = (
-        [_bare(solve(nlp, point, **options)) for point in points]
-        if workers == 1
-        else _in_processes(nlp, points, workers, options)
-    )
-    accepted = tuple(r.success and (accept is None or bool(accept(r))) for r in results)
-    return MultiStart(tuple(results), accepted, _best(results, accepted, accept is not None))
+    if patience is not None:
+        whole_number("patience", patience, 1)
+    results: list[Result] = []
+    accepted: list[bool] = []
+    distinct: tuple[int, ...] = ()
+    idle = 0
+    for found in _batches(nlp, points, workers, options, patience is not None):
+        results += found
+        accepted += [r.success and (accept is None or bool(accept(r))) for r in found]
+        before, distinct = distinct, _distinct(results, accepted)
+        idle = 0 if len(distinct) > len(before) else idle + len(found)
+        if patience is not None and idle >= patience:
+            break
+    best = _best(results, accepted, accept is not None)
+    return MultiStart(tuple(results), tuple(accepted), best, distinct)
+
+
+def _batches(
+    nlp: NLP, points: list[FloatArray], workers: int, options: dict[str, Any], small: bool
+) -> Iterator[list[Result]]:
+    """Results, some at a time: one, or as many as there are workers where batches are small."""
+    if workers > 1:
+        size = workers if small else len(points)
+        for k in range(0, len(points), size):
+            yield _in_processes(nlp, points[k : k + size], workers, options)
+        return
+    before: Result | None = None
+    for point in points:
+        shared = options if before is None else {"structure_of": before, **options}
+        before = solve(nlp, point, **shared)
+        yield [_bare(before)]
+
+
+def _distinct(results: Sequence[Result], accepted: Sequence[bool]) -> tuple[int, ...]:
+    """See `MultiStart`."""
+    kept: list[int] = []
+    successes = [i for i, good in enumerate(accepted) if good]
+    for i in sorted(successes, key=lambda k: results[k].objective):
+        if not any(_alike(results[i], results[k]) for k in kept):
+            kept.append(i)
+    return tuple(kept)
+
+
+def _alike(one: Result, other: Result) -> bool:
+    """Whether two solutions are the same optimum."""
+    apart = abs(one.objective - other.objective)
+    if apart > _SAME_OBJECTIVE * max(1.0, abs(one.objective)):
+        return False
+    size = np.maximum(1.0, np.abs(one.x))
+    return bool((np.abs(one.x - other.x) <= _SAME_PLACE * size).all())
 
 
 def scattered_starts(

@@ -39,6 +39,7 @@ def solve(
     callback: Callback | None = None,
     warm_start: Result | None = None,
     step_box: StepBox | None = None,
+    structure_of: Result | None = None,
 ) -> Result:
     """Solve a nonlinear program from x0.
 
@@ -59,6 +60,8 @@ def solve(
         step_box: number of the iteration and x (n,) → lower and upper limits of the step, each (n,)
             or a number, which enclose zero: for models that hold nearby only, with sequential
             quadratic programming.
+        structure_of: a result of a problem with the same sparsity, whose workspace is taken over
+            and nothing else: the solution is a cold one that saves the symbolic work.
 
     Returns:
         The result; it never claims more than its residuals show.
@@ -70,7 +73,8 @@ def solve(
     start = start_point("x0", nlp, x0)
     kind = choose_kind(nlp, hessian_kind)
     first = chosen(method, nlp, kind, options)
-    before = None if warm_start is None else warm_start.workspace
+    earlier = structure_of if warm_start is None else warm_start
+    before = None if earlier is None else earlier.workspace
     workspace = make_workspace(nlp, make_backends(qp, fallback), before)
     try:
         return _Solution(nlp, options, kind, workspace, first, first == method).run(start)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from flyby.core.sqp import NLP, Result, Status, scattered_starts, solve_from
+from flyby.core.sqp import NLP, Result, Status, scattered_starts, solve, solve_from
+from flyby.validation.textbook import DoubleIntegrator
 from flyby.validation.trajectories.jets import cos, log
 
 from .honesty import assert_honest
@@ -127,3 +128,33 @@ def test_scattered_starts_find_the_lowest_minimum() -> None:
     best = solve_from(nlp, starts).result
     assert best.objective == pytest.approx(-2)
     assert best.objective < alone.objective - 1
+
+
+def _two_wells() -> NLP:
+    return nlp_from(lambda x, y: ((x**2 - 1) ** 2 + 0.1 * x + y**2, [at_most(y, 3)]), 2)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_different_optima_are_kept_apart(workers: int) -> None:
+    starts = [(1.0, 0.0), (0.8, 1.0), (-0.7, 0.5), (-1.2, -1.0), (1.1, 0.2)]
+    found = solve_from(_two_wells(), starts, workers=workers)
+    assert len(found.distinct) == 2
+    assert found.distinct[0] == found.best
+    assert found.results[found.distinct[0]].x[0] < 0 < found.results[found.distinct[1]].x[0]
+
+
+def test_it_stops_where_nothing_new_is_found() -> None:
+    starts = [(1.0, 0.0), (-0.7, 0.5)] + [(1.0, 0.1 * k) for k in range(20)]
+    found = solve_from(_two_wells(), starts, patience=4)
+    assert len(found.results) == 6
+    assert len(found.distinct) == 2
+
+
+def test_starts_share_the_symbolic_work() -> None:
+    problem = DoubleIntegrator(30)
+    nlp, start = problem.nlp(), problem.initial_guess()
+    first = solve(nlp, start)
+    again = solve(nlp, start, structure_of=first)
+    assert again.workspace is first.workspace
+    assert again.method == "interior_point"
+    np.testing.assert_array_equal(again.x, first.x)
