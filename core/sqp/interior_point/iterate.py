@@ -144,26 +144,6 @@ def after(at: InteriorIterate, step: InteriorIterate, share: float) -> FloatArra
 
 
 @njit(cache=True, error_model="numpy")
-def reset_slacks(v: FloatArray, box: InteriorLimits, c: FloatArray) -> None:
-    """Take slacks to their rows' values where that leads away from their only limit: violation and
-    barrier both fall. In place.
-
-    Args:
-        v: (n + m,).
-        c: (m,).
-    """
-    n = len(v) - len(c)
-    for i in range(len(c)):
-        k = n + i
-        if box.held[k]:
-            continue
-        below, above = np.isfinite(box.lower[k]), np.isfinite(box.upper[k])
-        rises = c[i] > v[k]
-        if (rises and not above) or (not rises and not below):
-            v[k] = c[i]
-
-
-@njit(cache=True, error_model="numpy")
 def merit(v: FloatArray, box: InteriorLimits, c: FloatArray) -> tuple[float, float]:
     """Violation Σ |c − s|, and the barrier −Σ log of distances; infinite outside."""
     theta, barrier = 0.0, 0.0

@@ -11,7 +11,7 @@ from ..filter import Filter
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from .functions import Functions
-from .iterate import InteriorIterate, InteriorLimits, after, longest, merit, reset_slacks
+from .iterate import InteriorIterate, InteriorLimits, after, longest, merit
 from .newton import Newton, Place, SingularError
 
 _HALVINGS = 25
@@ -102,7 +102,6 @@ class LineSearch:
         except CallableError as error:
             self.trouble = error
             return None
-        reset_slacks(v, self._box, point.c)
         return point, v
 
     def _judged(
