@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from ...tasks.results.runs import Run
 
 _FIGURES = {"velocity": "speeds", "acceleration": "accelerations"}
+MOST_ALIKE = 3
+"""Faults that say the same of several places, before the rest of them is only counted."""
 MOST_LINES = 10
 """Lines that have a row of their own; the rest of them is summed up."""
 
