@@ -41,7 +41,10 @@ function drawn(session) {
     dot.addEventListener("keydown", (event) => event.key === "Enter" && session.choose(point.track ?? -1));
     return dot;
   });
-  const names = front.points.map((point) => svg("text", { class: "number", x: x(point.x) + 9, y: y(point.y) - 6 }, point.name.replace("point ", "")));
+  const names = front.points.map((point) => {
+    const given = point.name === "given";
+    return svg("text", { class: "number", x: x(point.x) + 9, y: y(point.y) + (given ? 16 : -6) }, point.name.replace("point ", ""));
+  });
   const mark = () => front.points.forEach((point, k) => dots[k].classList.toggle("picked", point.track === session.active));
   session.on("track", mark);
   mark();

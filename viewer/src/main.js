@@ -78,7 +78,7 @@ function start(page) {
   const tables = new TablePane(session, parts.tables, drawings);
   keys({ session, transport, view, overlay, tables, theme: turn });
   dress();
-  printing(parts.scene, view);
+  printing(parts, view, tables);
   run(session, view);
   const hash = /[#&]t=([\d.]+)/.exec(window.location.hash);
   if (hash) session.seek(+hash[1]);
@@ -96,12 +96,17 @@ function run(session, view) {
   window.requestAnimationFrame(frame);
 }
 
-/** On paper the scene is a picture. */
-function printing(host, view) {
-  if (!view) return;
-  const image = h("img", { class: "printed", alt: "the cell" });
-  host.append(image);
-  window.addEventListener("beforeprint", () => (image.src = view.picture()));
+/** On paper the scene is a picture, and tables stand one below the other. */
+function printing({ root, scene }, view, tables) {
+  const papers = h("section", { class: "papers" });
+  const image = view && h("img", { class: "printed", alt: "the cell" });
+  root.append(papers);
+  if (image) scene.append(image);
+  window.addEventListener("beforeprint", () => {
+    if (image) image.src = view.picture();
+    papers.replaceChildren(...tables.printed());
+  });
+  window.addEventListener("afterprint", () => papers.replaceChildren());
 }
 
 const ready = readPage().then(start);

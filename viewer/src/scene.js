@@ -282,7 +282,10 @@ export class SceneView {
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.host;
-    if (!width || !height) return;
+    if (width && height) this.size(width, height);
+  }
+
+  size(width, height) {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -305,10 +308,13 @@ export class SceneView {
     return true;
   }
 
-  picture() {
-    this.touch();
+  /** A picture of the cell as it is seen now, whatever the window's size. */
+  picture(width = 1500, height = 760) {
+    this.size(width, height);
     this.render();
-    return this.renderer.domElement.toDataURL("image/png");
+    const made = this.renderer.domElement.toDataURL("image/png");
+    this.resize();
+    return made;
   }
 
   /** Pixels from the left and from above of a point in the world; null behind the camera. */

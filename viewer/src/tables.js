@@ -100,6 +100,17 @@ export class TablePane {
     this.mark();
   }
 
+  /** All tables one below the other, for paper. */
+  printed() {
+    const at = this.at;
+    const made = this.tables.flatMap((table, k) => {
+      this.open(k);
+      return [h("h2", {}, table.title), ...[...this.body.childNodes].map((node) => node.cloneNode(true))];
+    });
+    this.open(at);
+    return made;
+  }
+
   row(row, table, numeric, most, filled) {
     const cells = row.cells.map((cell, k) => {
       if (!filled[k]) return null;
