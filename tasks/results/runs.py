@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -127,6 +128,16 @@ class Run(DrivenProgram):
         show(self)
 
     def _repr_html_(self) -> str:
+        """The page of the run in a frame; below it, folded, what shows where no script runs."""
+        from ...drawing.page.html import page_frame
+        from ..pages.of_results import page_bytes
+
+        told = (
+            f"<details><summary>{html.escape(repr(self)[1:-1])}</summary>{self._table()}</details>"
+        )
+        return page_frame(page_bytes(self)) + told
+
+    def _table(self) -> str:
         curves = [
             PictureCurve("path of the TCP", part.run.trajectory.position) for part in self.parts
         ]

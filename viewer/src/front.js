@@ -35,7 +35,7 @@ function drawn(session) {
   const found = front.points.filter((point) => point.name !== "given");
   const step = found.map((point, k) => (k ? `H${x(point.x)}V${y(point.y)}` : `M${x(point.x)} ${y(point.y)}`)).join("");
   const dots = front.points.map((point) => {
-    const dot = svg("circle", { class: `point${point.name === "given" ? " given" : ""}`, cx: x(point.x), cy: y(point.y), r: 6, tabindex: 0 });
+    const dot = svg("circle", { class: `point${point.name === "given" ? " given" : ""}`, cx: x(point.x), cy: y(point.y), r: point.name === "given" ? 10 : 6, tabindex: 0 });
     dot.append(svg("title", {}, `${point.name}: ${number(point.x, 3)} s, ${number(point.y, 1)} %`));
     dot.addEventListener("click", () => session.choose(point.track ?? -1));
     dot.addEventListener("keydown", (event) => event.key === "Enter" && session.choose(point.track ?? -1));

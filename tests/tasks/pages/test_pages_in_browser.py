@@ -1,0 +1,144 @@
+"""Pages of every kind in a real browser: they load, and show what is theirs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+
+import flyby
+from flyby.core.errors import InputError
+from flyby.tasks.pages.of_results import BUILDERS, page_bytes, page_of
+
+from ...cli.box_program import CELL, module
+
+ROOT = Path(__file__).parents[3]
+ROBOT = "abb/irb6640-180-255"
+SQUARE = ROOT / "examples/square.mod"
+Opened = Callable[..., Any]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("pages")
+
+
+@pytest.fixture(scope="module")
+def changed(folder: Path) -> bytes:
+    (folder / "cell.toml").write_text(CELL, "utf-8")
+    source = folder / "box.mod"
+    moves = [f"MoveAbsJ p{k},v1000,z10,rod;" for k in (1, 2, 3)]
+    source.write_text(module(*moves), "utf-8", newline="")
+    return page_bytes(flyby.zones(flyby.read(source, cell=folder / "cell.toml")))
+
+
+def test_before_and_after(opened: Opened, changed: bytes) -> None:
+    view = opened(changed)
+    assert view.evaluate("flyby.view.arms.map((arm) => arm.ghost)") == [False, True]
+    assert view.evaluate("flyby.session.track.name") == "after"
+    assert view.locator(".proof").inner_text().startswith("✓ proven")
+    view.locator(".proof").click()
+    at, told = view.evaluate("[flyby.session.t, flyby.session.track.data.proof.t]")
+    assert at == pytest.approx(told)
+    assert view.evaluate("flyby.view.tightest.visible")
+    view.locator(".choice").get_by_role("button", name="before").click()
+    assert view.evaluate("flyby.session.track.name") == "before"
+    assert "z10" in view.locator(".source").inner_text()
+
+
+def test_waypoint_by_waypoint(opened: Opened, changed: bytes) -> None:
+    """Both begin each move together, although one of them is faster."""
+    view = opened(changed)
+    view.get_by_label("how tracks run together").select_option("waypoints")
+    for move in (2, 3, 4):
+        times = view.evaluate(
+            """(move) => {
+              const [ghost, solid] = flyby.session.tracks;
+              flyby.session.seek(solid.moves[move].begin);
+              return [flyby.session.timeOf(ghost), ghost.moves[move].begin];
+            }""",
+            move,
+        )
+        assert times[0] == pytest.approx(times[1], abs=2e-3)
+
+
+def test_paint(opened: Opened, folder: Path) -> None:
+    x, y = np.meshgrid(np.linspace(-150, 150, 6), np.linspace(-100, 100, 4))
+    vertices = np.stack([x.ravel(), y.ravel(), 0.0 * x.ravel()], axis=1)
+    index = np.arange(24).reshape(4, 6)
+    a, b, c, d = (
+        i.ravel() for i in (index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1])
+    )
+    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    trimesh.Trimesh(vertices, faces, process=False).export(folder / "panel.stl")
+    (folder / "bell.toml").write_text(
+        "reference_distance_mm = 250\nnear_radius_mm = 35\n"
+        "radius_mm = [0, 150, 250]\ngrowth_um_s = [2, 20, 0]\n"
+    )
+    painted = flyby.paint(
+        folder / "panel.stl", folder / "bell.toml", target="50um", units="mm", points=100
+    )
+    page = page_of(painted)
+    assert page.coat is not None
+    known = page.coat.thickness.values[np.isfinite(page.coat.thickness.values)]
+    assert known.mean() == pytest.approx(list(painted.coats.values())[-1].thickness.mean())
+    view = opened(page_bytes(painted))
+    assert view.evaluate("flyby.view.coat.mesh.geometry.attributes.color.count") > 100
+    assert "of them within ±10 %" in view.locator(".drawing").inner_text()
+    # The gun's tip is where it was planned.
+    best = painted.painting.best
+    middle = 0.5 * best.total_duration
+    meant = [np.interp(middle, best.times, column) for column in best.position.T]
+    assert np.linalg.norm(
+        np.subtract(view.evaluate("(t) => flyby.session.track.tcp(t)", middle), meant)
+    ) == pytest.approx(0.0, abs=2e-4)
+
+
+def test_points_of_a_front_are_picked(opened: Opened) -> None:
+    program = flyby.read(SQUARE, robot=ROBOT)
+    view = opened(page_bytes(flyby.pareto(program, points=2)))
+    dots = view.locator(".drawing circle")
+    count = view.evaluate("flyby.session.tracks.length")
+    assert dots.count() == count >= 2
+    dots.nth(count - 1).click(force=True)
+    assert view.evaluate("flyby.session.active") == count - 1
+    view.locator(".drawing circle.given").press("Enter")
+    assert view.evaluate("flyby.session.track.name") == "given"
+
+
+def test_findings_lead_to_their_lines(opened: Opened) -> None:
+    program = flyby.read(ROOT / "examples/pick.script", cell=ROOT / "examples/cell/pick.toml")
+    view = opened(page_bytes(flyby.check(program), program=program))
+    view.locator("tbody tr.warning").first.click()
+    assert view.locator(".line.picked").get_attribute("data-line") == "18"
+    assert view.evaluate("flyby.session.t") > 0.0
+
+
+def test_findings_alone_make_a_page(opened: Opened) -> None:
+    program = flyby.read(SQUARE, robot=ROBOT)
+    view = opened(page_bytes(flyby.check(program)))
+    assert view.locator("table").count() == 1
+
+
+def test_other_results_have_no_page() -> None:
+    with pytest.raises(InputError, match="there is no page of int; there are of"):
+        page_bytes(3)
+    assert {"Run", "Solution", "Findings", "PaintedPart"} <= set(BUILDERS)
+
+
+def test_a_page_is_written_and_shown(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = flyby.emulate(flyby.read(SQUARE, robot=ROBOT))
+    path = flyby.report(run, folder / "run.html")
+    assert path.read_bytes().startswith(b"<!doctype html>")
+    with pytest.raises(InputError, match="must end in"):
+        flyby.report(run, folder / "run.txt")
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", lambda url: opened.append(url) or True)
+    run.show()
+    assert flyby.show(run).as_uri() == opened[-1]
+    shown = run._repr_html_()
+    assert shown.startswith("<iframe sandbox=") and "<svg" in shown
