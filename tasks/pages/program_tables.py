@@ -32,12 +32,12 @@ MOVES = (
 _NOTES = (PageColumn("line"), PageColumn("move"), PageColumn("what"))
 _FAULTS = (PageColumn("line"), PageColumn("move"), PageColumn("cause"), PageColumn("what"))
 _CAUSES = (
-    PageColumn("what holds the program back"),
+    PageColumn("cause"),
     PageColumn("gives back", "s", 3, bar=True),
     PageColumn("time", "s", 3),
     PageColumn("share", "%", 0),
     PageColumn("moves"),
-    PageColumn("most at line"),
+    PageColumn("line"),
 )
 _LINES = (
     PageColumn("line"),
@@ -151,7 +151,7 @@ def _causes(run: Run, sources: SourceList, track: int) -> list[PageTable]:
         )
         t = first.begin if first.driven and not line else None
         rows.append(PageRow(cells, "", track, t, None, source, line))
-    note = "What the program would take less if this alone fell away, the most first."
+    note = "Seconds that the program gains if one cause alone falls away."
     return [PageTable("Causes", _CAUSES, rows, note)]
 
 

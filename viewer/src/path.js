@@ -79,16 +79,19 @@ export class PathView {
 
   /** Short paths are drawn wide; of long ones, where lines lie over each other, that which is near. */
   driven() {
-    const { times, nodes } = this.track.path();
-    this.lines = [];
-    const wide = times.length <= this.amounts.wide;
+    const { times, local, nodes } = this.track.path();
+    const runs = [];
     let from = 0;
     for (let k = 1; k <= times.length; k += 1) {
       const gap = k < times.length && times[k] === times[k - 1];
       if (k < times.length && nodes[k] === nodes[from] && !gap) continue;
-      if (k - from > 1) this.lines.push(this.line(from, k, wide));
+      if (k - from > 1) runs.push([from, k]);
       from = k;
     }
+    this.shades = this.colours().colours;
+    const drawn = runs.reduce((sum, run) => sum + fewer(local, this.shades, ...run).length, 0);
+    const wide = drawn <= this.amounts.wide;
+    this.lines = runs.map((run) => this.line(...run, wide));
     this.near = wide || this.ghost || !this.lines.length ? null : this.line(0, Math.min(this.amounts.near, this.lines[0].to), true);
     this.colour();
   }

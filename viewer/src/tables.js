@@ -3,7 +3,7 @@
 import { h } from "./dom.js";
 
 const MOST_ROWS = 3000;
-const UNBROKEN = 26; // characters of a cell that stays in one line; longer ones are prose
+const UNBROKEN = 30; // characters of a cell that stays in one line; longer ones are prose
 
 export class TablePane {
   constructor(session, host, drawings = []) {
