@@ -10,10 +10,11 @@ import typer
 
 from ..core.display import counted
 from ..core.errors import InputError
-from ..tasks.files.outputs import check_outputs, write_all
+from ..tasks.files.outputs import check_outputs, page_name, write_all
 from ..tasks.identify import IdentifyOptions, identify_with
+from ..tasks.pages.of_results import page_bytes
 from .output.console import print_json, print_rich, print_table, progress, warn
-from .parameters import AsJson, Force, with_options
+from .parameters import AsJson, Force, PageFile, with_options
 
 if TYPE_CHECKING:
     from ..identification.fit import Fit, Judgement, Outcome
@@ -42,14 +43,13 @@ def identify(
     out: Annotated[
         Path | None, typer.Option("--out", help="Write the motion file (TOML), for --motion.")
     ] = None,
-    report: Annotated[
-        Path | None,
-        typer.Option("--report", help="Write a page of all runs, before and after (HTML)."),
-    ] = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
     """Fit how a controller drives to logs of what it drove."""
+    if report is not None:
+        page_name(report, "--report")
     outputs = {"--out": out, "--report": report}
     check_outputs(outputs, options.inputs(), replace_existing=force)
 
@@ -62,7 +62,7 @@ def identify(
     kept = not made.better and not force
     files = {} if out is None or kept else {out: made.text.encode()}
     if report is not None:
-        files[report] = made.report().encode()
+        files[report] = page_bytes(made)
     write_all("--out and --report", files)
     if json:
         print_json(_json(made.fit, list(made.outcomes), judged, list(made.scores)))

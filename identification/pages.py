@@ -1,4 +1,4 @@
-"""Pages for people: HTML and Markdown from templates that escape every value they are given.
+"""Pages for people: Markdown from templates that escape every value they are given.
 
 Names of files, runs, tools and figures come from anywhere, and may be written to be run by what
 shows the page. Templates alone hold marks; values are text, whatever they look like.
@@ -19,31 +19,21 @@ _MARKS = re.compile(r"([\\`\[\]|])")
 """Of Markdown, those that could begin a link or end a cell; HTML is escaped as in HTML."""
 
 
-def render_html(template: str, **values: Any) -> str:
-    """A page of HTML."""
-    return _environment(False).from_string(template).render(values)
-
-
 def render_markdown(template: str, **values: Any) -> str:
     """A page of Markdown; every value stays on one line, so that it begins no block."""
-    return _environment(True).from_string(template).render(values)
+    return _environment().from_string(template).render(values)
 
 
 @cache
-def _environment(markdown: bool) -> Environment:
+def _environment() -> Environment:
     return Environment(
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        finalize=_line if markdown else _text,
+        finalize=_line,
     )
-
-
-def _text(value: Any) -> Any:
-    """What is printed of a value: text without characters that are none."""
-    return value if isinstance(value, Markup) else shown(str(value))
 
 
 def _line(value: Any) -> Any:

@@ -1,1 +1,1 @@
-"""What a fit shows: pictures of runs beside their emulation, and the page that holds all."""
+"""What a log and its emulation show beside each other: corners, pictures."""

@@ -10,7 +10,6 @@ from ...core.driving.driven_program import DrivenProgram
 from ...core.motion.command.trajectory import Trajectory
 from ...drawing.page.content import (
     Page,
-    PageArm,
     PageChart,
     PageColumn,
     PageRow,
@@ -29,9 +28,10 @@ if TYPE_CHECKING:
     from ...identification.prediction import Prediction
 
 APART, LATE = "apart", "late"
-_CHARTS = (
+CHARTS_OF_LOGS = (
     PageChart(APART, "TCP off the emulated path", "mm"),
     PageChart(LATE, "Log behind the emulation", "ms"),
+    *CHARTS,
 )
 _MOST = 20_000
 """Samples of a log that a page shows."""
@@ -45,7 +45,7 @@ def comparison_page(found: Comparison) -> Page:
     run = Run.of(DrivenProgram.faultless(compared.driven), compared.robot)
     draft = PageDraft()
     draft.drive([run], cell_of(run), ["emulated"])
-    draft.tracks.append(measured_track(compared, draft.arms[0]))
+    draft.tracks.append(measured_track(compared, draft))
     tables = [
         _figures(found),
         *time_tables(run, draft.sources, 0),
@@ -67,14 +67,20 @@ def comparison_page(found: Comparison) -> Page:
         draft.tracks,
         draft.files(),
         tables,
-        (*_CHARTS, *CHARTS),
+        CHARTS_OF_LOGS,
         together=_meetings(compared),
         made_by=made_by(),
     )
 
 
-def measured_track(compared: Prediction, arm: PageArm, group: str = "") -> PageTrack:
-    """What was logged, as a ghost on the clock of the emulation, with how far it is off."""
+def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> PageTrack:
+    """What was logged, as a ghost on the clock of the emulation, with how far it is off.
+
+    Args:
+        compared: the log beside its emulation.
+        draft: whose last arm it is of.
+        group: of the track.
+    """
     found, aligned = compared.residuals, compared.alignment
     rows = slice(None, None, max(1, len(found.t) // _MOST))
     q = compared.log.q[aligned.rows][rows]
@@ -99,15 +105,16 @@ def measured_track(compared: Prediction, arm: PageArm, group: str = "") -> PageT
         Curve("log", LATE, late, max(0.01 * float(np.abs(late).max()), 0.1)),
     ]
     made, channels = page_motion(motion, compared.robot, curves)
+    tool = compared.driven.program.moves[0].tool.name
     return PageTrack(
         "measured",
-        0,
+        len(draft.arms) - 1,
         float(t[-1]) - begin,
         made,
         channels=channels,
         ghost=True,
         group=group,
-        tool=[one.name for one in arm.tools].index(compared.driven.program.moves[0].tool.name),
+        tool=[one.name for one in draft.arms[-1].tools].index(tool),
     )
 
 

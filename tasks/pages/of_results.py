@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 BUILDERS = {
     "Comparison": "comparison_page",
     "Findings": "findings_page",
+    "IdentifiedModel": "identified_page",
     "PaintedPart": "painted_page",
     "ProgramFront": "front_page",
     "Run": "run_page",

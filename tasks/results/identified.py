@@ -58,16 +58,12 @@ class IdentifiedModel:
         """Whether nothing says that the model the fit began with predicts better."""
         return self.judgement is None or self.judgement.better
 
-    def report(self) -> str:
-        """A page of all runs, before and after (HTML)."""
-        from ...identification.report.page import page as make_page
-
-        return make_page(self.fit, list(self.outcomes), self.text, self.judgement)
-
     @property
     def files(self) -> dict[str, bytes]:
         """The motion file and the page."""
-        return {"motion.toml": self.text.encode(), "report.html": self.report().encode()}
+        from ..pages.of_results import page_bytes
+
+        return {"motion.toml": self.text.encode(), "report.html": page_bytes(self)}
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -2,54 +2,31 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
 from flyby.core.motion.emulator.controller import Controller
+from flyby.drawing.page.content import Page
 from flyby.identification.fit import ParameterSet, fit, motion_file, outcomes
 from flyby.identification.logs import clean
 from flyby.identification.logs.synthetic import Faults
 from flyby.identification.prediction import predict
 from flyby.identification.report.corners import cut_corners
-from flyby.identification.report.page import page
 from flyby.identification.report.picture import (
     _nearest,
     _round_factor,
     draw_prediction,
     tcp_profiles,
 )
+from flyby.tasks.files.logged_runs import LoggedRuns
+from flyby.tasks.pages.of_results import page_bytes, page_of
+from flyby.tasks.results.identified import IdentifiedModel
 
 from .known_truth import ROBOT, START, VENDOR, logged, ready
 
 FITTED = ("blend.tcp.beta[0]", "time.smoothing_s[*]", "elasticity.own_s2[1]")
-
-
-class Text(HTMLParser):
-    """Cells of tables, row by row, and whatever is not closed."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.rows: list[list[str]] = []
-        self.open: list[str] = []
-
-    def handle_starttag(self, tag, attrs) -> None:
-        if tag not in ("img", "meta"):
-            self.open.append(tag)
-        if tag == "tr":
-            self.rows.append([])
-        if tag in ("td", "th"):
-            self.rows[-1].append("")
-
-    def handle_endtag(self, tag) -> None:
-        assert self.open.pop() == tag
-
-    def handle_data(self, data) -> None:
-        if self.open and self.open[-1] in ("td", "th"):
-            self.rows[-1][-1] += data
 
 
 @pytest.fixture(scope="module")
@@ -69,43 +46,52 @@ def file(fitted) -> str:
 
 
 @pytest.fixture(scope="module")
-def shown(fitted, each, file) -> str:
-    """The page."""
-    return page(fitted, each, file)
+def made(fitted, each, file) -> IdentifiedModel:
+    return IdentifiedModel(fitted, tuple(each), None, (), file, LoggedRuns((), (), 0), ())
 
 
-def test_the_page_states_what_was_found(fitted, each, shown) -> None:
-    text = Text()
-    text.feed(shown)
-    assert not text.open
-    rows = {row[0]: row[1:] for row in text.rows if row}
+def rows(page: Page, title: str) -> dict[str, tuple]:
+    (table,) = (one for one in page.tables if one.title == title)
+    return {row.cells[0]: tuple(row.cells[1:]) for row in table.rows}
+
+
+def test_the_page_states_what_was_found(fitted, each, made) -> None:
+    page = page_of(made)
+    known = rows(page, "Parameters")
     for one in fitted.intervals:
-        assert float(rows[one.name][1]) == pytest.approx(one.value, rel=1e-4)
+        assert float(known[one.name][1]) == pytest.approx(one.value, rel=1e-4)
+    left = rows(page, "Runs")
     for one in each:
-        path, *_ = next(row[1:] for row in text.rows if row[0] == one.run.name and len(row) == 10)
-        before, after = map(float, path.split(" → "))
-        assert before == pytest.approx(1e3 * one.before.figures.path_max, abs=6e-4)
-        assert after == pytest.approx(1e3 * one.after.figures.path_max, abs=6e-4)
+        before, after, *_ = left[one.run.name]
+        assert before == pytest.approx(1e3 * one.before.figures.path_max)
+        assert after == pytest.approx(1e3 * one.after.figures.path_max)
 
 
-def test_the_page_says_what_samples_were_as_read(fitted, each) -> None:
+def test_the_page_drives_each_run_as_emulated_and_as_measured(each, made) -> None:
+    page = page_of(made)
+    for one in each:
+        tracks = [track for track in page.tracks if track.group == one.run.name]
+        assert [(track.name, track.ghost) for track in tracks] == [
+            ("before the fit", True),
+            ("after it", False),
+            ("measured", True),
+        ]
+        assert tracks[2].duration == pytest.approx(float(np.ptp(one.after.residuals.t)))
+
+
+def test_the_page_says_what_samples_were_as_read(each, made) -> None:
     one = each[0]
-    log = replace(one.after.log, notes=("put together",))
     read = replace(one.after.figures, path_max=0.01234, joint_path_max=np.radians(0.567))
-    told = replace(one, after=replace(one.after, log=log, read=read))
-    made = page(fitted, [told], "")
-    assert "put together" in made and "up to 12.340 mm" in made and "up to 0.567°" in made
-    assert made.count("As read") == 1
+    told = replace(one, after=replace(one.after, read=read))
+    notes = rows(page_of(replace(made, outcomes=(told,))), "Notes")
+    (note,) = (one for one in notes if "as read" in one)
+    assert "up to 12.340 mm" in note and "up to 0.567°" in note
 
 
-def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(
-    fitted, each, file, shown
-) -> None:
-    assert "<logs>" in file and "<logs>" not in shown and "&lt;logs&gt;" in shown
-    assert len(re.findall(r'src="data:image/png;base64,', shown)) == len(each)
-    assert "http" not in shown
-    assert len(shown) < 250_000 * len(each)
-    assert shown == page(fitted, each, file)
+def test_the_page_is_whole_in_one_file_and_escapes_what_it_is_told(file, made) -> None:
+    shown = page_bytes(made).decode()
+    assert "<logs>" in file and "<logs>" not in shown and "\\u003clogs>" in shown
+    assert page_bytes(made).decode() == shown
 
 
 def test_corners_are_those_of_the_program(each) -> None:
@@ -120,7 +106,6 @@ def test_corners_are_those_of_the_program(each) -> None:
 
 @pytest.mark.parametrize(("run", "kind", "start"), [(0, "svg", b"<?xml"), (1, "pdf", b"%PDF")])
 def test_pictures_of_runs_with_and_without_corners(each, run, kind, start) -> None:
-    """Those of the page are PNG."""
     assert draw_prediction(each[run].before, kind).startswith(start)
 
 
