@@ -38,7 +38,9 @@ function along(stops, share) {
   return [0, 1, 2].map((i) => (stops[k][i] + (at - k) * (stops[k + 1][i] - stops[k][i])) / 255);
 }
 
-export const viridis = (share) => along(VIRIDIS, share);
+/** The darkest is left out on dark ground, the brightest on bright. */
+export const viridis = (share, theme = "light") =>
+  along(VIRIDIS, theme === "dark" ? 0.16 + 0.84 * Math.min(Math.max(share, 0), 1) : 0.92 * Math.min(Math.max(share, 0), 1));
 export const diverging = (share) => along(DIVERGING, share);
 export const css = ([r, g, b]) => `rgb(${Math.round(255 * r)},${Math.round(255 * g)},${Math.round(255 * b)})`;
 export const rgb = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255);

@@ -106,7 +106,7 @@ export class Overlay {
       this.scale.replaceChildren();
       return;
     }
-    const stops = Array.from({ length: 9 }, (_, k) => css(viridis(turned ? 1 - k / 8 : k / 8)));
+    const stops = Array.from({ length: 9 }, (_, k) => css(viridis(turned ? 1 - k / 8 : k / 8, view.theme)));
     const ramp = h("i", { class: "ramp" });
     ramp.style.background = `linear-gradient(90deg, ${stops.join(",")})`;
     this.scale.replaceChildren(h("span", {}, number(low)), ramp, h("span", {}, `${number(high)} ${unit}`));

@@ -173,7 +173,7 @@ export class PathView {
     const colours = values.map((v) => {
       if (!Number.isFinite(v)) return [0.6, 0.6, 0.6];
       const share = (v - low) / (high - low);
-      return viridis(turned ? 1 - share : share);
+      return viridis(turned ? 1 - share : share, this.view.theme);
     });
     return { colours, low, high, unit: by.unit, turned };
   }
