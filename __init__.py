@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from flyby.tasks.catalogue import cell, robot, robots, vendors
     from flyby.tasks.check import check
     from flyby.tasks.compare import compare
+    from flyby.tasks.cspace import cspace
     from flyby.tasks.diff.diff import diff
     from flyby.tasks.emulate import emulate
     from flyby.tasks.experiment import experiment
@@ -41,6 +42,7 @@ __all__ = [
     "cell",
     "check",
     "compare",
+    "cspace",
     "diff",
     "emulate",
     "experiment",

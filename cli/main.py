@@ -28,6 +28,7 @@ COMMANDS = {
             *("zones", "optimize", "pareto"),
         )
     },
+    "cspace": "cspace",
     "free": "free",
     "tune": "free",
     "paint": "paint",

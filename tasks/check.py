@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..core.errors import FlybyError, MotionError, SourceError, Span
-from .cell_course import CellCourse
 from .options.keywords import by_keywords
+from .results.cell_course import CellCourse
 from .setup import RobotOptions, Setup, start_of, with_setup
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
-from .cell_course import CellCourse
 from .options.entries import TIME, Extent, number, switch
 from .options.keywords import by_keywords
+from .results.cell_course import CellCourse
 from .setup import RobotOptions, start_of, with_setup
 
 if TYPE_CHECKING:

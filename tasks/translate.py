@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from ..core.display import counted
 from ..core.door import given
 from ..core.errors import InputError
-from .cell_course import CellCourse
 from .check import clearance_findings
 from .options.entries import REQUIRED, TaskOptions, switch, value
 from .options.keywords import by_keywords
 from .options.texts import pose
+from .results.cell_course import CellCourse
 from .setup import (
     RobotOptions,
     Setup,

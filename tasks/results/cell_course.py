@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .setup import Setup, start_of
+from ..setup import Setup, start_of
 
 if TYPE_CHECKING:
-    from ..core.collision.clearance import MoveClearance
-    from ..core.driving.driven_program import DrivenPart
-    from ..core.errors import Note
-    from ..core.handling.handling import Handling
-    from ..core.program.program import Program
+    from ...core.collision.clearance import MoveClearance
+    from ...core.driving.driven_program import DrivenPart
+    from ...core.errors import Note
+    from ...core.handling.handling import Handling
+    from ...core.program.program import Program
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class CellCourse:
         """
         if setup.cell is None or not setup.cell.parts:
             return cls(program)
-        from ..core.handling.handling import handling_of
-        from ..core.handling.loads import with_loads
+        from ...core.handling.handling import handling_of
+        from ...core.handling.loads import with_loads
 
         handling = handling_of(program, setup.cell, start_of(program))
         loaded, notes = with_loads(program, handling)
@@ -56,7 +56,7 @@ class CellCourse:
         """
         if setup.cell is None:
             return (), ()
-        from ..core.collision.clearance import ClearanceMeter
+        from ...core.collision.clearance import ClearanceMeter
 
         meter = ClearanceMeter(setup.cell, self.program, self.handling)
         found = [move for part in parts for move in meter.over(part.run.path, part.first)]
