@@ -13,6 +13,9 @@ from ...problems.improve.energy import Front, FrontPoint
 from ..files.texts import ProgramTexts
 from ..setup import Setup, like
 
+JOULE = "J"
+"""Unit of what motors take; squared torques mean something beside each other alone."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ProgramFront(Front):
@@ -58,8 +61,8 @@ class ProgramFront(Front):
     def rows(self) -> list[tuple[str, ...]]:
         """The given program and each point: time, energy, and of each joint that moves."""
         joints = [j for j, value in enumerate(self.given.by_joint) if abs(value) > 0.0]
-        rows = [("given", *_row(self.given, self.given, joints))]
-        return rows + [(str(k), *_row(self.given, p, joints)) for k, p in enumerate(self.points, 1)]
+        named = [("given", self.given), *((str(k), p) for k, p in enumerate(self.points, 1))]
+        return [(name, *_row(self.given, p, joints, self.unit)) for name, p in named]
 
     def columns(self) -> list[tuple[str, str]]:
         """Headings of `rows`."""
@@ -68,8 +71,7 @@ class ProgramFront(Front):
             ("point", "right"),
             ("time s", "right"),
             ("%", "right"),
-            (f"energy {self.unit}", "right"),
-            ("%", "right"),
+            *energy_columns(self.unit),
             *((f"{self.axes[j]} %", "right") for j in joints),
             ("clearance", "left"),
         ]
@@ -80,7 +82,8 @@ class ProgramFront(Front):
         first, last = self.points[0], self.points[-1]
         return (
             f"<Front: {counted(self.points, 'program')}, {first.duration:.3f} s to "
-            f"{last.duration:.3f} s, {first.energy:.4g} to {last.energy:.4g} {self.unit}>"
+            f"{last.duration:.3f} s, {100 * first.energy / self.given.energy:.0f} to "
+            f"{100 * last.energy / self.given.energy:.0f} % of the energy>"
         )
 
     def _repr_html_(self) -> str:
@@ -88,24 +91,34 @@ class ProgramFront(Front):
 
         parts = [table(self.columns(), self.rows())]
         if len(self.points) > 1:
-            at = np.array([(p.duration, p.energy) for p in self.points])
+            given = self.given.energy
+            at = np.array([(p.duration, 100 * p.energy / given) for p in self.points])
             parts.append(
-                picture([PictureCurve(f"energy, {self.unit}, over time, s", at, at)], "s, …")
+                picture([PictureCurve("energy, % of the given program's, over s", at, at)], "s, …")
             )
         return page(repr(self)[1:-1], *parts, notes=self.notes)
 
 
-def _row(given: FrontPoint, point: FrontPoint, joints: Sequence[int]) -> tuple[str, ...]:
+def energy_columns(unit: str) -> list[tuple[str, str]]:
+    """Headings of energy: what motors take in kJ, squared torques in shares of the given ones."""
+    if unit == JOULE:
+        return [("energy kJ", "right"), ("%", "right")]
+    return [("torque² % of given", "right")]
+
+
+def _row(given: FrontPoint, point: FrontPoint, joints: Sequence[int], unit: str) -> tuple[str, ...]:
     def change(value: float, before: float) -> str:
         # What motors take is negative where more comes back.
         return "" if point is given else f"{100.0 * (value - before) / abs(before):+.1f}"
 
     proof = point.certificate
+    energy = [f"{100.0 * point.energy / given.energy:.1f}"]
+    if unit == JOULE:
+        energy = [f"{1e-3 * point.energy:.4g}", change(point.energy, given.energy)]
     return (
         f"{point.duration:.4f}",
         change(point.duration, given.duration),
-        f"{point.energy:.5g}",
-        change(point.energy, given.energy),
+        *energy,
         *(change(point.by_joint[j], given.by_joint[j]) for j in joints),
         "" if proof is None else ("proven" if proof.proven else "not proven"),
     )

@@ -57,9 +57,11 @@ def _draw_energy(axes: Axes, front: Front) -> None:
         axes.plot(given.duration, 100.0, "s", color=_GIVEN, zorder=1, label="as given")
     else:
         axes.plot([], [], "s", color=_GIVEN, label=f"as given: {given.duration:.3f} s, 100 %")
-    axes.set_title(f"time and energy (100 % are {given.energy:.4g} {front.unit})")
+    whole = f" (100 % are {1e-3 * given.energy:.3g} kJ)" if front.unit == "J" else " (as torque²)"
+    axes.set_title(f"time and energy{whole}")
     axes.set_xlabel("cycle time, s")
     axes.set_ylabel("energy, % of the given program's")
+    axes.margins(x=0.08, y=0.12)  # numbers stand beside their points
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.5 * (low + high) - 1.0), max(high, 0.5 * (low + high) + 1.0))
     axes.legend()

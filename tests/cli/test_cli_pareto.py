@@ -85,7 +85,7 @@ def test_a_script_is_patched(flyby: Flyby, tmp_path: Path):
     assert result.exit_code == 0, result.output
     text = (out / "point-2" / "m.script").read_text("ascii")
     assert text.startswith("def m():\n  movej([0,-1.6,0.1,-1.6,0,0], a=") and text != SCRIPT
-    assert "wrote" in result.stdout and "energy N² m² s" in result.stdout
+    assert "wrote" in result.stdout and "torque² % of given" in result.stdout
 
 
 def test_an_energy_that_comes_back_is_less_when_more_comes_back():
@@ -93,7 +93,7 @@ def test_an_energy_that_comes_back_is_less_when_more_comes_back():
         SimpleNamespace(duration=t, energy=e, by_joint=np.array([j]), certificate=None)
         for t, e, j in ((2.0, -100.0, -50.0), (2.2, -120.0, -40.0))
     )
-    assert fronts._row(given, point, [0])[1:5] == ("+10.0", "-120", "-20.0", "+20.0")
+    assert fronts._row(given, point, [0], "J")[1:5] == ("+10.0", "-0.12", "-20.0", "+20.0")
 
 
 def test_motors_count_in_joules(flyby: Flyby, module: Path, tmp_path: Path):
