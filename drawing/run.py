@@ -11,7 +11,7 @@ from ..core.arrays import FloatArray
 from ..core.display import counted
 from ..core.driving.driven_program import DrivenProgram
 from ..core.robot.model import Robot
-from .geometry import PathGeometry, path_geometry, tcp_speed
+from .geometry import PathGeometry, part_geometry, path_geometry, tcp_speed, turning_part
 from .style import LIMIT, NOMINAL, SPEED, STOP, STYLE, ZONE, figure_file
 
 if TYPE_CHECKING:
@@ -41,9 +41,11 @@ def make_figure(driven: DrivenProgram, robot: Robot) -> Figure:
     halves: Any = figure.subfigures(1, 2, width_ratios=(1.0, 1.15))
     left, right = halves
     runs = [part.run for part in driven.parts]
-    _draw_path(left, driven, [path_geometry(run, robot) for run in runs])
+    part = turning_part(runs)
+    parts = [path_geometry(run, robot) if part is None else part_geometry(run) for run in runs]
+    _draw_path(left, driven, parts, "" if part is None else f" of {part}")
     speed, position, velocity = right.subplots(3, 1, sharex=True)
-    _draw_speed(speed, driven)
+    _draw_speed(speed, driven, parts)
     _draw_joints(position, velocity, driven, robot)
     for axes in (speed, position, velocity):
         for begin in driven.begins[1:]:
@@ -62,20 +64,27 @@ def make_figure(driven: DrivenProgram, robot: Robot) -> Figure:
     return figure
 
 
-def _draw_path(figure: SubFigure, driven: DrivenProgram, parts: Sequence[PathGeometry]) -> None:
-    """The path in space above, and along a world axis below."""
+def _draw_path(
+    figure: SubFigure, driven: DrivenProgram, parts: Sequence[PathGeometry], frame: str
+) -> None:
+    """The path in space above, and along an axis below, of the world or the frame that is named."""
     grid = figure.add_gridspec(2, 1, height_ratios=(1.0, 1.05), hspace=0.12)
     space = figure.add_subplot(grid[0], projection="3d")
     plane = figure.add_subplot(grid[1])
     _draw_space(space, driven, parts)
-    coloured = _draw_plane(plane, driven, parts, _view(driven, parts))
+    if frame:
+        space.set_title(f"path of the TCP, in the frame{frame}, which turns under it")
+    view = _view(parts)
+    coloured = _draw_plane(plane, driven, parts, view)
+    plane.set_xlabel(f"{'xyz'[view[0]]}{frame}, mm")
+    plane.set_ylabel(f"{'xyz'[view[1]]}{frame}, mm")
     bar = figure.colorbar(coloured, ax=plane, shrink=0.9, pad=0.02)
     bar.set_label("TCP speed, mm/s")
     bar.outline.set_visible(False)
 
 
-def _view(driven: DrivenProgram, parts: Sequence[PathGeometry]) -> tuple[int, int]:
-    """The two world axes in which most zones lie flat; without zones those of the largest spans."""
+def _view(parts: Sequence[PathGeometry]) -> tuple[int, int]:
+    """The two axes in which most zones lie flat; without zones those of the largest spans."""
     facing = np.zeros(3)
     for geometry in parts:
         legs = np.diff(geometry.waypoints, axis=0)
@@ -83,7 +92,7 @@ def _view(driven: DrivenProgram, parts: Sequence[PathGeometry]) -> tuple[int, in
         normals = np.abs(np.cross(legs[:-1], legs[1:]))[geometry.radius[1:-1] > 0]
         facing += normals.sum(axis=0)
     if not facing.any():
-        facing = -np.ptp(driven.trajectory.position, axis=0)
+        facing = -np.ptp(np.concatenate([geometry.driven for geometry in parts]), axis=0)
     across, up = (axis for axis in range(3) if axis != int(np.argmax(facing)))
     return across, up
 
@@ -91,11 +100,11 @@ def _view(driven: DrivenProgram, parts: Sequence[PathGeometry]) -> tuple[int, in
 def _draw_space(axes: Any, driven: DrivenProgram, parts: Sequence[PathGeometry]) -> None:
     from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
-    points = 1e3 * driven.trajectory.position
+    points = 1e3 * np.concatenate([geometry.driven for geometry in parts])
     for nominal in _nominal(parts):
         axes.plot(*(1e3 * nominal.T), color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8)
-    lines = Line3DCollection(_strokes(driven, [0, 1, 2]), linewidth=1.8, cmap="viridis")
-    lines.set_array(_stroke_speeds(driven))
+    lines = Line3DCollection(_strokes(parts, [0, 1, 2]), linewidth=1.8, cmap="viridis")
+    lines.set_array(_stroke_speeds(driven, parts))
     axes.add_collection3d(lines)
     waypoints, radius = _waypoints(parts)
     stops = 1e3 * waypoints[radius == 0]
@@ -133,16 +142,14 @@ def _draw_plane(
     axes.add_collection(
         PatchCollection(circles, facecolor=ZONE + "22", edgecolor=ZONE, linewidth=0.8)
     )
-    lines = LineCollection(list(_strokes(driven, list(view))), linewidth=1.8, cmap="viridis")
-    lines.set_array(_stroke_speeds(driven))
+    lines = LineCollection(list(_strokes(parts, list(view))), linewidth=1.8, cmap="viridis")
+    lines.set_array(_stroke_speeds(driven, parts))
     axes.add_collection(lines)
     stops = 1e3 * waypoints[~passed][:, view]
     axes.plot(*stops.T, "s", color=STOP, markersize=3.5)
     if len(waypoints) <= NUMBERED:
         _number(axes, driven, parts, view)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(f"{'xyz'[view[0]]}, mm")
-    axes.set_ylabel(f"{'xyz'[view[1]]}, mm")
     axes.margins(0.08)
     handles = [
         Line2D([], [], color=NOMINAL, linestyle=(0, (4, 3)), linewidth=0.8, label="programmed"),
@@ -183,21 +190,27 @@ def _waypoints(parts: Sequence[PathGeometry]) -> tuple[FloatArray, FloatArray]:
     return points, np.concatenate([geometry.radius for geometry in parts])
 
 
-def _strokes(driven: DrivenProgram, axes: list[int]) -> FloatArray:
+def _strokes(parts: Sequence[PathGeometry], axes: list[int]) -> FloatArray:
     """Straight pieces (K, 2, D) of the path in mm along some axes; none across a gap."""
-    paths = [1e3 * part.run.trajectory.position[:, axes] for part in driven.parts]
+    paths = [1e3 * geometry.driven[:, axes] for geometry in parts]
     return np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in paths])
 
 
-def _stroke_speeds(driven: DrivenProgram) -> FloatArray:
+def _stroke_speeds(driven: DrivenProgram, parts: Sequence[PathGeometry]) -> FloatArray:
     """mm/s on each of the strokes."""
-    speeds = [1e3 * tcp_speed(part.run) for part in driven.parts]
+    speeds = [1e3 * speed for speed in _speeds(driven, parts)]
     return np.concatenate([0.5 * (v[1:] + v[:-1]) for v in speeds])
 
 
-def _draw_speed(axes: Axes, driven: DrivenProgram) -> None:
+def _speeds(driven: DrivenProgram, parts: Sequence[PathGeometry]) -> list[FloatArray]:
+    """m/s of the TCP at the samples of each part, in the frame that it is drawn in."""
+    pairs = zip(driven.parts, parts, strict=True)
+    return [tcp_speed(part.run, geometry.driven) for part, geometry in pairs]
+
+
+def _draw_speed(axes: Axes, driven: DrivenProgram, parts: Sequence[PathGeometry]) -> None:
     trajectory = driven.trajectory
-    speed = np.concatenate([tcp_speed(part.run) for part in driven.parts])
+    speed = np.concatenate(_speeds(driven, parts))
     axes.fill_between(trajectory.t, 1e3 * speed, color=SPEED, alpha=0.12, linewidth=0)
     axes.plot(trajectory.t, 1e3 * speed, color=SPEED, linewidth=1.2, label="driven")
     wanted = [driven.program.moves[i].speed.tcp for i in trajectory.move]
