@@ -93,3 +93,18 @@ def test_what_zones_finds_is_a_candidate_of_optimize() -> None:
     wide = flyby.zones(FOLDED, predefined=True)
     made = flyby.optimize(FOLDED, zones_only=True, predefined=True, starts=1, generations=0)
     assert made.proven and made.after.time <= wide.after.time + 1e-9 < wide.before.time
+    # What is written is what was chosen, not what was read back on the way.
+    assert b"".join(made.files.values()).count(b"z150") == sum(
+        getattr(move.zone, "name", None) == "z150" for move in made.program.moves
+    )
+
+
+def test_what_zones_finds_is_a_candidate_of_pareto() -> None:
+    wide = flyby.zones(FOLDED)
+    front = flyby.pareto(FOLDED, points=2, change="zones")
+    assert front.points[0].duration <= wide.after.time + 1e-6
+    # Its text is its own: read again it is that program.
+    (name,) = front.folders[0]
+    read = flyby.read(front.folders[0][name].decode(), cell=CELL)
+    assert [move.zone for move in read.moves] == [m.zone for m in front.points[0].program.moves]
+    assert flyby.emulate(read).duration == pytest.approx(front.points[0].duration, abs=5e-3)

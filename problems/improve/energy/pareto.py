@@ -29,6 +29,7 @@ from ..waypoints.freed_stops import with_freed_stops
 from ..waypoints.options import Freedom
 from ..waypoints.options import WaypointTask as Wishes
 from ..waypoints.variables import ProgramVariables, make_variables
+from ..waypoints.zones_alone import with_zones_of, zones_alone
 from .front import Front, FrontPoint, without_dominated
 from .options import EnergyScope, EnergyTask, Goal
 from .paced_problem import EvaluatedProgram, Watch
@@ -146,6 +147,7 @@ class _Work:
             self._search(search, count, candidates, seen)
         points: list[FrontPoint] = []
         with suppress(KeyboardInterrupt):
+            points += self._zones_alone(program)
             for k, (goal, candidate) in enumerate(candidates):
                 finished = search.finish(goal, candidate.x)
                 if finished is None:
@@ -163,6 +165,27 @@ class _Work:
             self.task.consumption.unit,
             tuple(notes),
         )
+
+    def _zones_alone(self, program: Program) -> list[FrontPoint]:
+        """The program with zones as large as they can be, which `zones` finds; or none."""
+        if not self._shapes or self.cell is None:
+            return []
+        wishes = self._wishes
+        program = replace(program, start=wishes.start or program.start)
+        base = with_freed_stops(self.controller, program, wishes, [])
+        made = zones_alone(self.controller, program, base, self.cell, wishes, self.read_back)
+        if made is None or len(made.program.moves) != len(program.moves):
+            return []  # written anew it may begin with a move of its own
+        # Once more, with the texts that it is known by.
+        read = self.read_back(with_zones_of(program, made.program))
+        scenes = scenes_of(self.cell)
+        held = ProgramFeasibility(
+            self.controller, scenes, self._clearance, wishes.residual, program.start, None
+        )
+        run, proof = held.verified(read)
+        if run is None or proof is None or not proof.proven:
+            return []
+        return [FrontPoint.of(self.controller, run, self.task.consumption, proof)]
 
     # -------------------------------------------------------------------------- searching
 

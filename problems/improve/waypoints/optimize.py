@@ -22,8 +22,6 @@ from ..progress import Progress, Report
 from ..rounding import Rounding
 from ..solution import Solution, measure, moved_points
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
-from ..zones.maximize import maximize_zones
-from ..zones.options import ZoneTask
 from .block_emulation import drivable
 from .block_search import Answer, Shared
 from .blocks import MoveBlock, cut
@@ -33,6 +31,7 @@ from .multistart import improve
 from .options import Effort, Freedom, ViaCount, WaypointTask
 from .variables import make_variables
 from .via_selection import Counted, change_count, idle_points
+from .zones_alone import with_zones_of, zones_alone
 
 _GAIN = 1e-6
 """Share of the objective below which nothing has been gained."""
@@ -129,26 +128,9 @@ class _Optimization:
     def _zones_alone(self, program: Program, base: Program, read_back: ReadBack) -> Counted | None:
         """What the largest zones alone bring, with all points as they are."""
         task = self.task
-        path = self.controller.plan(base, task.start)
-        selection = select(base, path, self.controller.robot, task)
-        changeable = {i for group in selection.zones for i in group}
-        if not changeable:
-            return None
         self._tell("making zones alone as large as they can be")
-        wanted = ZoneTask(
-            clearance=task.clearance,
-            residual=task.residual,
-            freed=[i for i in task.freed if i in changeable],
-            pattern=task.pattern,
-            kept=[i for i in range(len(base.moves)) if i not in changeable],
-            rounding=task.rounding,
-            start=task.start,
-        )
-        try:
-            made = maximize_zones(self.controller, program, self.cell, wanted, read_back)
-        except FlybyError:
-            return None
-        if not made.changed or not made.proven or made.certificate is None:
+        made = zones_alone(self.controller, program, base, self.cell, task, read_back)
+        if made is None or made.certificate is None:
             return None
         run = self.controller.run(made.program, task.start)
         return Counted(run, made.certificate, self._cost(run), task)
@@ -158,8 +140,9 @@ class _Optimization:
         found less than these; None if it is no better."""
         if self.ended or self.task.freedom is Freedom.ZONES:
             return None
-        pairs = zip(base.moves, zones.run.program.moves, strict=True)
-        begun = base.with_moves(tuple(replace(old, zone=new.zone) for old, new in pairs))
+        if len(zones.run.program.moves) != len(base.moves):
+            return None
+        begun = with_zones_of(base, zones.run.program)
         try:
             found = self._improved(begun, self.task, self.effort, [])
         except MotionError:
