@@ -558,7 +558,8 @@ def test_statements_become_comments_with_their_line(between) -> None:
     made = pair.translate(program)
     texts = [s.text for s in made.program.statements if isinstance(s, Opaque)]
     assert texts == ["; Set doGr?n;", "; Reset b;", "; SetDO doGlue,1;"]
-    assert [note.span.line for note in made.losses] == [7, 8]
+    # Beside what a short move takes longer on a controller that settles longer.
+    assert [note.span.line for note in made.losses if note.span is not None] == [7, 8]
     assert not any(move.events for move in made.program.moves)
 
 
@@ -603,10 +604,10 @@ def test_dialects_refuse_what_no_speed_has() -> None:
 
 @pytest.mark.parametrize("back", [False, True])
 def test_times_of_joint_moves_count_how_controllers_settle(back) -> None:
-    """The IRB 6640's settles for 0.1 s at every stop, the KR 30's does not."""
+    """Both settle for 0.1 s at every stop, each for a time of its own."""
     names = ["abb/irb6640-180-255", "kuka/kr30-3"]
     old, new = map(side, reversed(names) if back else names)
-    speed = Speed(joint_fraction=0.3) if back else Speed(tcp=0.56, reorientation=2.0)
+    speed = Speed(joint_fraction=0.3) if back else Speed(tcp=1.2, reorientation=8.0)
     home = (0.0, -1.4, 1.6, 0.0, 0.9, 0.0) if back else (0.0, 0.2, 0.2, 0.0, 1.0, 0.0)
     turns = (home[0], 0.6, -0.4, 0.3)
     moves = tuple(MoveJ(JointTarget((turn, *home[1:])), speed, FINE) for turn in turns)
