@@ -118,7 +118,8 @@ def test_the_moves_are_what_the_topic_asks_for(name: str) -> None:
         for length in passed:
             assert min(abs(1e3 * length - one) for one in told) < 0.03
     for run in runs_of(made, Kind.POINT_TURNS):
-        assert np.ptp(run.run.trajectory.position, axis=0).max() < 2e-5
+        # The path does; averages over the joints take some controllers' TCP off it.
+        assert np.ptp(tcp_positions(robot, FLANGE, run.run.path.q), axis=0).max() < 2e-5
         assert np.ptp(run.run.trajectory.q[:, 3:], axis=0).max() > 0.2
     for run in runs_of(made, Kind.RESTS):
         at = places(run)
