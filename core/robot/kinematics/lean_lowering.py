@@ -211,7 +211,9 @@ class WholeCalls(CPUCallConv):  # type: ignore[misc]
     def declare(self, module: Any, described: Any) -> Any:
         """A function, in the code of one that calls it."""
         kind = self.get_function_type(described.restype, described.argtypes)
-        function = get_or_insert_function(module, kind, described.mangled_name)
+        # Kernels that an older version has kept hold functions that are called in numba's way.
+        name = f"{described.mangled_name}.whole"
+        function = get_or_insert_function(module, kind, name)
         self.decorate_function(function, described.args, described.argtypes)
         return function
 
