@@ -308,7 +308,7 @@ def first_command_fraction(case: str) -> float:
             continue
         for fault in emulation.faults:
             print(f"{path.name}: {fault}", file=sys.stderr)
-        done += emulation.faultless and emulation.duration > 0
+        done += not emulation.faults and emulation.duration > 0
     return done / len(programs)
 
 

@@ -175,8 +175,9 @@ def leads_somewhere(program: Program, start: JointTarget | None = None) -> bool:
 
     at: object = start
     for number, move in enumerate(program.moves):
-        goes = None if move.open else (move.target, move.tool.tcp, move.work_object.pose)
-        stays = at == goes or (at is start and move.target == start)
+        target = replace(move.target, name=None)
+        goes = None if move.open else (target, move.tool.tcp, move.work_object.pose)
+        stays = at == goes or (at is start and target == start)
         known = goes is not None and at is not None and not (number == 0 and start is None)
         if known and (not stays or isinstance(move, MoveC)):
             return True

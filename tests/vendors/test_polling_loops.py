@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+import flyby
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.execution.answers import Answers
@@ -141,3 +142,14 @@ def test_a_branch_to_a_known_place_is_taken(robot: str, text: str, driven: int) 
     answered = Answers(goes_on=True, branches={branch.key: 1})
     program = vendor.read(text, name, robot=find_robot(robot), answers=answered)
     assert any(move.open for move in program.moves)
+
+
+def test_one_place_under_two_names_is_left_from_a_ready_posture() -> None:
+    text = RAPID.replace("BODY", "") + (
+        f"MODULE b\nCONST jointtarget jHome:=[[0,0,0,0,30,0],{EXTERNAL}];\nPROC home()\n"
+        f"MoveAbsJ jHome,v100,fine,tool0;\nMoveAbsJ [[0,0,0,0,30,0],{EXTERNAL}],v100,fine,tool0;\n"
+        "ENDPROC\nENDMODULE\n"
+    )
+    program = flyby.read(text, robot="abb/irb1600-6-145", entry="home")
+    assert any("no move leads from one place" in note.message for note in program.notes)
+    assert flyby.emulate(program).duration > 0
