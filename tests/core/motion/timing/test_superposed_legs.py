@@ -94,7 +94,7 @@ def test_programmed_speeds_hold_in_zones_and_stamps_know_what_binds(abb) -> None
     assert x.max() < 0.1 * 1.002
     assert not (slow.timing.path_limits.binding[:, 1] == ZONE).any()
     run = driven(abb, SUPERPOSED, corner(abb, 1.0))[0]
-    assert {"corner", "TCP acceleration"} <= {
+    assert {"corner", "programmed TCP acceleration"} <= {
         share.name for shares in limit_shares(run, abb.robot.axis_names) for share in shares
     }
 
