@@ -56,11 +56,11 @@ class Nodes:
         carrying = next((axis.name for axis in tracks if axis.name not in below), None)
         nodes.base = nodes._add("base", nodes.carrier(carrying), robot.base.matrix())
         at = nodes.base
-        for count, joint in enumerate(robot.joints, 1):
-            new = robot.arm_stages(count)[len(robot.arm_stages(count - 1)) :]
-            for stage in new:
-                at = nodes._stage(joint.name, at, stage)
-            nodes.links.append(at)
+        nodes.links = [at] * robot.arm_size
+        for index in robot.along:
+            for stage in robot.joint_stages(index):
+                at = nodes._stage(robot.joints[index].name, at, stage)
+            nodes.links[index] = at
         nodes.flange = nodes._add("flange", at, robot.flange.matrix())
         return nodes
 
