@@ -110,7 +110,8 @@ def optimize(
     Returns:
         The fastest that keeps the clearance, or the last one if none does.
     """
-    answers = partial(solve, qp=BackendKind.INTERIOR_POINT) if solver is None else solver
+    ours = partial(solve, method="sqp", qp=BackendKind.INTERIOR_POINT)  # the guess is a good one
+    answers = ours if solver is None else solver
     problem = Transcription(task, grid, freedom, pairs=())
     x = initial_guess(problem, share)
     pairs, margin, iterations = _near(problem, x), 0.0, 0
