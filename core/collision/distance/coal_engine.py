@@ -204,7 +204,9 @@ def _shape(solid: Solid) -> Any:
 
 
 def _polytope(solid: Polytope) -> Any:
-    points = coal.StdVec_Vec3s()
+    points, faces = coal.StdVec_Vec3s(), coal.StdVec_Triangle()
     for vertex in solid.vertices:
         points.append(vertex)
-    return coal.Convex.convexHull(points, True, "Qt")
+    for face in solid.faces.tolist():
+        faces.append(coal.Triangle(*face))
+    return coal.Convex(points, faces)

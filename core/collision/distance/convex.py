@@ -24,6 +24,11 @@ DENT = 1e-3
 """Depth of what is surely a dent, by the part's size."""
 MOST_PARTS = 24
 """Meshes of more parts than these are not taken apart."""
+MOST_NEIGHBOURS = 200
+"""Corners that one corner is joined to; coal takes 255."""
+HAIR = 1e-9
+"""m by which a corner of more edges is drawn apart."""
+_TRIES = 4
 THIN = 1e-6
 """Half the thickness that a flat part's hull is given, by the part's size."""
 
@@ -151,9 +156,25 @@ def _volume(vertices: FloatArray, faces: NDArray[np.int64]) -> float:
 def hull(points: FloatArray) -> Polytope:
     """The convex hull of points (V, 3); flat ones are given a thickness.
 
+    No corner has more neighbours than collision libraries take: flat facets are cut so that edges
+    spread over their corners, and a corner of more edges (the tip of a cone) is drawn apart by a
+    hair, outward.
+
     Raises:
-        InputError: all points coincide.
+        InputError: all points coincide, or thousands of edges meet again and again.
     """
+    for _ in range(_TRIES):
+        solid = _hull_of(points)
+        # On a closed surface a corner has as many neighbours as triangles.
+        degree = np.bincount(solid.faces.ravel())
+        crowded = np.flatnonzero(degree > MOST_NEIGHBOURS)
+        if not len(crowded):
+            return solid
+        points = _drawn_apart(solid.vertices, crowded, degree)
+    raise InputError("too many edges of a mesh meet at one corner; it needs fewer facets")
+
+
+def _hull_of(points: FloatArray) -> Polytope:
     from scipy.spatial import ConvexHull, QhullError
 
     try:
@@ -168,11 +189,68 @@ def hull(points: FloatArray) -> Polytope:
             ) from error
     used, index = np.unique(found.simplices, return_inverse=True)
     vertices = np.ascontiguousarray(points[used])
-    faces = index.reshape(-1, 3).astype(np.int64)
-    a, b, c = np.moveaxis(vertices[faces], 1, 0)
-    inward = np.einsum("fi,fi->f", np.cross(b - a, c - a), found.equations[:, :3]) < 0.0
-    faces[inward] = faces[inward][:, ::-1]
+    faces = _spread(vertices, index.reshape(-1, 3).astype(np.int64), found.equations)
     return Polytope(vertices, faces)
+
+
+def _spread(
+    vertices: FloatArray, faces: NDArray[np.int64], planes: FloatArray
+) -> NDArray[np.int64]:
+    """Triangles (F, 3) outward, of which those in one plane meet in no corner by the hundred.
+
+    Args:
+        vertices: (V, 3) m.
+        faces: triangles of a hull.
+        planes: (F, 4) the plane of each; equal for those that were cut from one facet.
+    """
+    _, facet, size = np.unique(planes, axis=0, return_inverse=True, return_counts=True)
+    facet = facet.ravel()
+    large = size[facet] >= MOST_NEIGHBOURS // 2
+    kept, normals = faces[~large], planes[~large, :3]
+    a, b, c = np.moveaxis(vertices[kept], 1, 0)
+    inward = np.einsum("fi,fi->f", np.cross(b - a, c - a), normals) < 0.0
+    kept[inward] = kept[inward][:, ::-1]
+    cut = [kept]
+    for one in np.unique(facet[large]):
+        rows = np.flatnonzero(facet == one)
+        cut.append(_halved(_ring(vertices, np.unique(faces[rows]), planes[rows[0], :3])))
+    return np.concatenate(cut)
+
+
+def _ring(
+    vertices: FloatArray, corners: NDArray[np.int64], normal: FloatArray
+) -> NDArray[np.int64]:
+    """Corners of a facet in their order about its normal."""
+    out = vertices[corners] - vertices[corners].mean(axis=0)
+    x = out[0] - (out[0] @ normal) * normal
+    y = np.cross(normal, x)
+    return corners[np.argsort(np.arctan2(out @ y, out @ x))]
+
+
+def _halved(ring: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Triangles (K - 2, 3) of a convex polygon, halved again and again: no corner is in many."""
+    made, open_ = [], [(0, len(ring) - 1)]
+    while open_:
+        first, last = open_.pop()
+        if last - first > 1:
+            middle = (first + last) // 2
+            made.append((first, middle, last))
+            open_ += [(first, middle), (middle, last)]
+    return np.asarray(ring[np.array(made)])
+
+
+def _drawn_apart(
+    vertices: FloatArray, crowded: NDArray[np.int64], degree: NDArray[np.int64]
+) -> FloatArray:
+    """The corners with a ring of corners in place of each of the crowded ones."""
+    made = [np.delete(vertices, crowded, axis=0)]
+    for corner in crowded:
+        tip = vertices[corner]
+        # Across the way in, so that the tip lies in the middle of the ring: nothing is cut off.
+        _, _, ways = np.linalg.svd((tip - vertices.mean(axis=0))[None])
+        turn = np.linspace(0.0, 2.0 * np.pi, 3 + 4 * int(degree[corner]) // MOST_NEIGHBOURS)[:-1]
+        made.append(tip + HAIR * np.column_stack([np.cos(turn), np.sin(turn)]) @ ways[1:])
+    return np.concatenate(made)
 
 
 def _thickened(points: FloatArray) -> FloatArray:

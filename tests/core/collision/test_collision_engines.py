@@ -14,9 +14,10 @@ from flyby.core.collision.distance.answers import Distances
 from flyby.core.collision.distance.closed_form import hulls_of, measure
 from flyby.core.collision.distance.coal_engine import CoalEngine
 from flyby.core.collision.distance.containment import Nesting
+from flyby.core.collision.distance.convex import MOST_NEIGHBOURS, hull
 from flyby.core.collision.distance.engine import BodyPoses, Witness
 from flyby.core.collision.distance.fcl_engine import FclEngine
-from flyby.core.collision.distance.solid import Solid, core_radius, extent
+from flyby.core.collision.distance.solid import Solid, TriangleMesh, core_radius, extent
 from flyby.core.robot.shape import Box, Capsule, Cylinder, Sphere
 
 from .conftest import (
@@ -364,3 +365,33 @@ def test_rays_along_edges_and_corners_are_counted_right() -> None:
         assert nesting.inside(0, point[None], at)
     for point in grid[outside]:
         assert not nesting.inside(0, point[None], at)
+
+
+def drum(facets: int) -> trimesh.Trimesh:
+    """A prism of many facets, whose ends have as many corners."""
+    return trimesh.creation.cylinder(0.2, 0.5, sections=facets)
+
+
+def cone(facets: int) -> trimesh.Trimesh:
+    """A tip where as many edges meet."""
+    return trimesh.creation.cone(0.2, 0.5, sections=facets)
+
+
+@pytest.mark.parametrize("facets", [100, 400, 1000])
+@pytest.mark.parametrize("make", [drum, cone])
+@pytest.mark.parametrize("noise", [0.0, 1e-8])
+def test_many_edges_at_one_corner_leave_distances_exact(make, facets, noise) -> None:
+    """coal takes 255 neighbours of a corner; a lathe's part has caps and tips of more."""
+    rng = np.random.default_rng(facets)
+    turn = trimesh.transformations.random_rotation_matrix(rng.random(3))
+    points = make(facets).apply_transform(turn).vertices
+    solid = hull(points + noise * rng.uniform(-1.0, 1.0, points.shape))
+    mesh = TriangleMesh(solid.vertices, solid.faces, closed=True)
+    assert np.bincount(solid.faces.ravel()).max() <= MOST_NEIGHBOURS
+    ball = Sphere(0.01)
+    for _ in range(60):
+        way = rng.normal(size=3)
+        centre = way / np.linalg.norm(way) * rng.uniform(0.3, 2.0)
+        at = BodyPoses(np.array([np.eye(3)] * 2), np.array([np.zeros(3), centre]))
+        found = coal_witness(solid, ball, at)
+        assert found.distance == pytest.approx(coal_witness(mesh, ball, at).distance, abs=3e-8)
