@@ -166,10 +166,12 @@ def _links(robot: Robot, nodes: Nodes) -> list[PageBody]:
 def _skeleton(robot: Robot, nodes: Nodes) -> list[PageBody]:
     """Bars from joint to joint, of an arm whose shapes nobody knows."""
     reach = sum(math.hypot(*joint.placement.position) for joint in robot.joints)
-    bars = []
-    for joint, carrier in zip(robot.joints, [nodes.base, *nodes.links], strict=False):
+    bars, carrier = [], nodes.base
+    for index in robot.along:
+        joint = robot.joints[index]
         bars += _bar(joint.name, carrier, joint.placement, _STICK * reach, PageRole.LINK)
-    return bars + _bar("flange", nodes.links[-1], robot.flange, _STICK * reach, PageRole.LINK)
+        carrier = nodes.links[index]
+    return bars + _bar("flange", carrier, robot.flange, _STICK * reach, PageRole.LINK)
 
 
 def _bar(

@@ -17,7 +17,9 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import WorkObject
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.robot.assembly import assemble
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Follower, Joint, JointKind
+from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.drawing.page.arms import Nodes, page_arm
@@ -72,6 +74,25 @@ def test_followers_turn_with_their_drivers(values: list[float]) -> None:
     q, nodes = np.array(values[:6]), Nodes.of(rods)
     at = placed(nodes, q)[nodes.flange]
     np.testing.assert_allclose(at, rods.flange_pose(q).matrix(), atol=1e-12)
+
+
+@pytest.mark.parametrize("shapes", [True, False])
+@pytest.mark.parametrize(
+    "name", ["abb/irb660-180-315", "kuka/kr140-r3200-2-pa", "abb/irb910sc-3-065", "ur/ur5e"]
+)
+def test_every_arm_of_the_catalogue_is_drawn_where_it_stands(name: str, shapes: bool) -> None:
+    """Palletisers and SCARAs too, of which one counts A4 behind A5."""
+    robot = find_robot(name)
+    robot = robot if shapes else replace(robot, shapes=())
+    q = np.array([0.3, 0.2, 0.1, 0.0, 0.4, 0.6])
+    nodes = Nodes.of(robot)
+    frames = placed(nodes, q)
+    np.testing.assert_allclose(frames[nodes.flange], robot.flange_pose(q).matrix(), atol=1e-12)
+    for link in range(robot.arm_size + 1):
+        R, p = poses(assemble([*robot.base_stages(), *robot.link_stages(link)]), q[None])
+        np.testing.assert_allclose(frames[nodes.link(link)][:3, :3], R[0], atol=1e-12)
+        np.testing.assert_allclose(frames[nodes.link(link)][:3, 3], p[0], atol=1e-12)
+    assert page_arm(robot).bodies
 
 
 def test_the_programmed_path_stands_on_its_table() -> None:

@@ -59,7 +59,7 @@ def test_links_are_where_the_trajectory_has_them(opened: Opened, page: bytes, ru
         view.evaluate("(t) => flyby.session.seek(t)", float(trajectory.t[row]))
         shown = drawn(view)
         for link in range(robot.arm_size + 1):
-            chain = assemble([*robot.base_stages(), *robot.arm_stages(link)])
+            chain = assemble([*robot.base_stages(), *robot.link_stages(link)])
             R, p = poses(chain, np.ascontiguousarray(trajectory.q[row : row + 1]))
             at = shown[names.index("base") + link]
             assert np.linalg.norm(at[:3, 3] - p[0]) < CLOSE
