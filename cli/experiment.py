@@ -1,4 +1,4 @@
-"""``flyby experiment``: test motions that show how a controller drives, as programs that log."""
+"""``flyby experiment`` and ``flyby record``: programs that log themselves."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ import typer
 from ..core.display import counted
 from ..tasks.experiment import ExperimentOptions, experiment_with
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
+from ..tasks.read import SourceOptions, read_with
+from ..tasks.record import RecordOptions, record_with
 from .output.console import print_json, print_rich, print_table, progress, warn
-from .parameters import AsJson, Force, with_options
+from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
     from ..identification.experiment.plan import Experiment
@@ -93,3 +95,21 @@ def _json(made: Experiment, written: list[Path]) -> dict[str, Any]:
         "notes": list(made.notes),
         "files": [str(path) for path in written],
     }
+
+
+@with_options
+def record(
+    program: ProgramFile,
+    source: SourceOptions,
+    options: RecordOptions,
+    out: Annotated[Path, typer.Option("--out", help="Folder to write the files to.")],
+    force: Force = False,
+) -> None:
+    """Write a program that drives the same moves and logs joints with time on the controller."""
+    check_folder("--out", out)
+    with progress("reading the program"):
+        made = record_with(read_with(program, source), options)
+        files = {Path(name): data for name, data in made.files.items()}
+        written = write_in("--out", out, files, [program, *source.inputs()], force)
+    for path in written:
+        print_rich(f"wrote {path}")

@@ -24,11 +24,12 @@ COMMANDS = {
     **{
         name: name
         for name in (
-            *("check", "translate", "record", "experiment", "compare", "identify"),
+            *("check", "translate", "experiment", "compare", "identify"),
             *("zones", "optimize", "pareto"),
         )
     },
-    "cspace": "cspace",
+    "cspace": "view",
+    "record": "experiment",
     "free": "free",
     "tune": "free",
     "paint": "paint",

@@ -1,20 +1,23 @@
-"""``flyby view``: a program in its cell, looked at in a browser."""
+"""``flyby view`` and ``flyby cspace``: a program in its cell, and in the space of two joints."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..core.errors import OptionError
+from ..core.errors import Note, OptionError
 from ..core.program.entry_point import ALL
+from ..tasks.cspace import CspaceOptions, cspace_with
 from ..tasks.emulate import EmulateOptions, emulate_with
+from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.pages.of_results import page_bytes
 from ..tasks.pages.show import open_page, temporary_page
 from ..tasks.read import SourceOptions, read_with
-from .output.console import print_rich, progress, warn
-from .parameters import ProgramFile, with_options
+from .output.console import print_json, print_rich, progress, warn, warn_of
+from .parameters import AsJson, Force, ProgramFile, with_options
 
 
 @with_options
@@ -40,3 +43,40 @@ def view(
     print_rich(str(path))
     if not no_browser and not open_page(path):
         warn("no browser was found: open the page yourself")
+
+
+@with_options
+def cspace(
+    program: ProgramFile,
+    source: SourceOptions,
+    options: CspaceOptions,
+    plot: Annotated[Path, typer.Option("--plot", help="The picture: PNG, PDF or SVG.")],
+    json: AsJson = False,
+    force: Force = False,
+) -> None:
+    """Draw where the arm is free while two joints vary, with the path of a program in it."""
+    kind = picture_kind(plot, "--plot")
+    check_outputs({"--plot": plot}, [program, *source.inputs()], force)
+    with progress("reading the program") as say:
+        found = cspace_with(read_with(program, source), replace(options, report=say))
+        say("drawing")
+        write_all("--plot", {plot: found.picture(kind)})
+    first, second = found.names
+    if json:
+        print_json(
+            {
+                "robot": found.robot.name,
+                "joints": [first, second],
+                "held_rad": found.plane.held.tolist(),
+                "free": found.plane.free,
+                "notes": list(found.notes),
+                "files": [str(plot)],
+            }
+        )
+    else:
+        print_rich(
+            f"{first} and {second} of {found.robot.name}, with {found.held}: nothing touches in "
+            f"{found.plane.free:.0%} of the plane",
+            f"wrote {plot}",
+        )
+    warn_of(Note(note) for note in found.notes)

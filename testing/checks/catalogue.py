@@ -82,7 +82,7 @@ class CatalogueChecks(Subject):
         robot = data.draw(robots(self.vendor))
         q = data.draw(regular_configurations(robot))
         label = self.vendor.label(robot, q)
-        if label is None or robot.recognised is None:
+        if label is None or label.hint or robot.recognised is None:
             return
         external = q[robot.arm_size :]
         for solution in inverse(robot, q):

@@ -23,7 +23,7 @@ def test_a_robot_is_known_without_its_vendor_and_offered_where_it_is_misspelt(
 ) -> None:
     result = flyby("emulate", SQUARE, "--robot", "IRB 6640-180/2.55")
     assert f"on {ROBOT}" in result.stdout
-    result = flyby("emulate", SQUARE, "--robot", "irb6640-180-254")
+    result = flyby("emulate", SQUARE, "--robot", "irb6640-18-256")
     assert f"did you mean '{ROBOT}'" in result.stderr
 
 

@@ -225,7 +225,7 @@ def test_code_for_another_vendor_stands_beside(
         (
             1,
             ("--also", "kuka", "--out", "o"),
-            "--also kuka: which of its 165 robots?",
+            "--also kuka: which of its",
         ),
         (1, ("--also", "fanuc", "--out", "o"), "fanuc"),
         (1, ("--also", "kuka/iiwa7-r800", "--out", "o"), "no program can be written"),

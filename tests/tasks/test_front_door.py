@@ -384,7 +384,7 @@ def test_moves_setups_and_motion_models_tell_what_matters() -> None:
     assert repr(stood) == f"<Setup: {ROBOT}, driven by abb, cell two_joints.toml>"
     model = named_robot("kuka/kr30-3").vendor.motion_of(flyby.robot("kuka/kr30-3"))
     stated = len(model.figures)
-    line = f"<Motion model: period 12 ms, zones half, smoothing none, {stated} figures: "
+    line = f"<Motion model: period 12 ms, zones half, smoothing 36 + 36 ms, {stated} figures: "
     assert repr(model).startswith(line)
     counts = [int(n) for n in re.findall(r"(\d+) (?:assumed|fitted|published)", repr(model))]
     assert sum(counts) == stated

@@ -60,7 +60,7 @@ def test_what_others_add_to_a_target_counts_as_nothing(krl, body, height):
     assert "depends on" in said(program)
 
 
-def test_what_an_interrupt_finds_is_where_it_was_before(krl):
+def test_what_an_interrupt_finds_is_where_the_search_ends(krl):
     src = (
         "DEF demo( )\nINTERRUPT DECL 20 WHEN $IN[1]==TRUE DO Found()\n"
         f"{INIT}INTERRUPT ON 20\nLIN XP1\nIF hit THEN\nLIN place\nENDIF\nLIN place\nEND\n"
@@ -68,7 +68,7 @@ def test_what_an_interrupt_finds_is_where_it_was_before(krl):
     )
     data = P1 + "BOOL hit=FALSE\nDECL E6POS place={" + POSE % 900 + "}\n"
     program = krl(src=src, data=data)
-    assert heights(program)[-1] == 900
+    assert heights(program)[-1] == 1000  # where the search ends
     assert "which the interrupt's Found() writes" in said(program)
 
 
