@@ -50,7 +50,7 @@ def draw_station(
     for row, key in enumerate(keys, len(run.schedules)):
         for begin, end in _on(run, key, last):
             _bar(axes, row, begin, end, _SIGNAL, 0.5 * _HEIGHT)
-    spelt = _spelt(actions)
+    spelt = _spelt(station, actions)
     axes.set_yticks(range(rows), [*run.schedules, *(spelt.get(key, key) for key in keys)])
     axes.set_ylim(rows - 0.5, -0.5)
     axes.set_xlim(0.0, last)
@@ -90,11 +90,13 @@ def _on(run: StationRun, key: str, last: float) -> list[tuple[float, float]]:
     return found if since is None else [*found, (since, last)]
 
 
-def _spelt(actions: Mapping[str, Sequence[Action]]) -> dict[str, str]:
-    """Names of outputs as programs write them, by key."""
-    return {
-        signal_key(f"{name}.{action.does.name}"): f"{name}.{action.does.name}"
+def _spelt(station: RobotStation, actions: Mapping[str, Sequence[Action]]) -> dict[str, str]:
+    """Names of signals by key, as the station's file and the programs write them."""
+    wired = [end for wire in station.wires for end in (wire.source, wire.target)]
+    written = [
+        f"{name}.{action.does.name}"
         for name, doings in actions.items()
         for action in doings
         if isinstance(action.does, SetSignal)
-    }
+    ]
+    return {signal_key(name): name for name in [*wired, *station.gates, *station.given, *written]}

@@ -7,6 +7,7 @@ import { h, number } from "./dom.js";
 const LEFT = 54;
 const RIGHT = 14;
 const GAP = 1e-9;
+const FAR = 3; // programmed by driven speed, from which on only what is driven scales a plot
 const READ_EVERY = 120; // ms between read-outs while time runs
 
 export class PlotPane {
@@ -94,6 +95,8 @@ export class PlotPane {
     const tables = curves.map(({ track, channel }) => [this.clockTimes(track), Array.from(channel.values, (v) => (Number.isFinite(v) ? v : null))]);
     const data = uPlot.join(tables.map(([x, y]) => [x, y]), tables.map(() => [2]));
     const limit = chart.span;
+    // What is programmed may be far beyond what is driven (vmax): it runs out of the plot then.
+    const [driven, asked] = [false, true].map((stepped) => highest(curves.filter(({ channel }) => !!channel.stepped === stepped)));
     const series = curves.map(({ channel, colour, own, dashed, name }) => ({
       label: name,
       stroke: colour,
@@ -103,6 +106,7 @@ export class PlotPane {
       spanGaps: true,
       paths: channel.stepped ? uPlot.paths.stepped({ align: 1 }) : undefined,
       show: !slot.hidden.has(name),
+      auto: !channel.stepped || driven === 0 || asked < FAR * driven,
     }));
     const options = {
       width: Math.max(slot.plot.clientWidth, 50),
@@ -191,7 +195,7 @@ export class PlotPane {
     const chart = this.charts[+slot.choose.value];
     const parts = slot.curves.map(({ track, channel, colour, name }) => {
       const value = track.value(channel, this.session.timeOf(track, t));
-      const label = h("button", { class: slot.hidden.has(name) ? "key off" : "key", title: "hide or show" }, h("i", {}), `${name} `, h("b", {}, number(value, chart.unit.startsWith("%") ? 0 : null)));
+      const label = h("button", { class: slot.hidden.has(name) ? "key off" : "key", title: `${name}: hide or show` }, h("i", {}), h("span", {}, name), h("b", {}, number(value, chart.unit.startsWith("%") ? 0 : null)));
       label.firstChild.style.background = colour;
       label.addEventListener("click", () => {
         if (!slot.hidden.delete(name)) slot.hidden.add(name);
@@ -355,6 +359,10 @@ export class PlotPane {
     const what = move ? `move ${move.number}${move.line ? `, line ${move.line}` : ""}: ` : "";
     this.band.title = `${t.toFixed(3)} s, ${what}${name}`;
   }
+}
+
+function highest(curves) {
+  return curves.reduce((most, { channel }) => channel.values.reduce((top, v) => (v > top ? v : top), most), 0);
 }
 
 function colourOf(channel, joint, k, own) {

@@ -50,6 +50,21 @@ def test_before_and_after(opened: Opened, changed: bytes) -> None:
     assert "z10" in view.locator(".source").inner_text()
 
 
+def test_what_is_driven_fills_its_plot_and_names_fit(opened: Opened) -> None:
+    """Programs ask for vmax; a UR's joints have long names."""
+    moves = "".join(f"movel(p[0.4,{y},0.4,0,3.14,0], a=9, v=50)\n" for y in (-0.2, 0.2))
+    run = flyby.emulate(flyby.read(f"def main():\n{moves}end\n", robot="ur/ur5e"))
+    view = opened(page_bytes(run))
+    top = view.evaluate("flyby.plots.slots[0].made.scales.y.max")
+    driven = "flyby.plots.slots[0].curves[0].channel.values"
+    most = view.evaluate(f"Array.from({driven}).reduce((a, b) => Math.max(a, b))")
+    assert 0.0 < most <= top < 1.5 * most < 50e3
+    cut = """() => [...document.querySelectorAll(".read span")]
+      .filter((name) => name.scrollWidth > name.clientWidth + 1).map((name) => name.textContent)"""
+    assert view.locator(".read").nth(1).inner_text().count("wrist") == 3
+    assert view.evaluate(cut) == []
+
+
 def test_waypoint_by_waypoint(opened: Opened, changed: bytes) -> None:
     """Both begin each move together, although one of them is faster."""
     view = opened(changed)
