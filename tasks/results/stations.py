@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.collision.mutual.pair_proof import Conflict, PairVerdict
+from ...core.collision.mutual.pair_proof import Conflict, ConflictCause, PairVerdict
 from ...core.display import counted, in_line
 from ...core.errors import Note, Span
 from ...core.notebook import page, table
@@ -148,7 +148,7 @@ class DrivenStation:
             (
                 " and ".join(pair.robots),
                 f"{1e3 * pair.least:.1f} mm at {pair.least_at:.2f} s",
-                _verdict(pair.in_time),
+                _verdict(pair.in_time, least=pair.least),
                 _verdict(pair.any_time, "needs interlocks for {}"),
                 "" if pair.interlocked is None else _verdict(pair.interlocked, "open for {}"),
             )
@@ -172,7 +172,7 @@ class DrivenStation:
         for name, own in zip(pair.robots, conflict.times, strict=True):
             clocked = self.run.schedules[name].clocked(np.array([[own, own]]))[0, 0]
             when.append(f"{name} at {clocked:.3f} s")
-        why = "" if conflict.cause.name == "NEAR" else f" ({conflict.cause})"
+        why = _WHY.get(conflict.cause, f" ({conflict.cause})")
         return (
             f"{bodies[0]} and {bodies[1]} {far}{why}: {places[0]} and {places[1]} "
             f"({', '.join(when)} of the station)"
@@ -203,6 +203,11 @@ class DrivenStation:
         found = [] if self.deadlock is None else [str(self.deadlock)]
         for pair in self.clearances:
             found += [self.conflict_said(pair, c) for c in pair.in_time.conflicts.values()]
+            if not pair.in_time.proven and pair.least < 0.0:
+                both = " and ".join(pair.robots)
+                found.append(
+                    f"{both} overlap by {-1e3 * pair.least:.1f} mm at {pair.least_at:.3f} s"
+                )
         for pair in self.clearances:
             if pair.in_time.proven and pair.interlocked is not None:
                 worst = sorted(pair.interlocked.conflicts.values(), key=_nearness)[:1]
@@ -305,6 +310,13 @@ class DrivenStation:
         return page(repr(self)[1:-1], *parts, notes=[*self.findings(), *self.notes])
 
 
+_WHY = {
+    ConflictCause.NEAR: "",
+    ConflictCause.DEVIATION: ", too little for what smoothing in time may add",
+}
+"""What is said of a conflict's cause behind its distance."""
+
+
 def _nearness(conflict: Conflict) -> float:
     return np.inf if conflict.distance is None else conflict.distance
 
@@ -321,13 +333,18 @@ def _place(span: Span | None) -> str:
     return "" if span is None else f"{span.file}:{span.line}"
 
 
-def _verdict(verdict: PairVerdict, what: str = "") -> str:
+def _verdict(verdict: PairVerdict, what: str = "", least: float = np.inf) -> str:
+    """A verdict in a few words.
+
+    Args:
+        verdict: what was found.
+        what: how many pairs of moves, said with this.
+        least: m that was met.
+    """
     if verdict.proven:
         return f"{1e3 * verdict.clearance:g} mm proven"
     if what:
         return what.format(counted(verdict.conflicts, "pair of moves", "pairs of moves"))
-    return (
-        "not kept"
-        if any(c.cause.name == "NEAR" for c in verdict.conflicts.values())
-        else ("not proven")
-    )
+    causes = {conflict.cause for conflict in verdict.conflicts.values()}
+    near = ConflictCause.NEAR in causes or least < verdict.clearance
+    return "not kept" if near else "not proven"

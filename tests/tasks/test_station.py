@@ -10,6 +10,7 @@ import pytest
 
 import flyby
 from flyby.core.errors import FlybyError
+from flyby.drawing.station import draw_station
 
 HOMES = ("[0,0,0,0,30,0]", "[20,0,0,0,30,0]", "[-20,0,0,0,30,0]")
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
@@ -216,6 +217,18 @@ def test_robots_that_share_space_are_named_with_both_lines(write: Write) -> None
     assert not made.clear
     (finding,) = [f for f in made.findings() if "one's move" in f][:1]
     assert "one.mod:" in finding and "two.mod:" in finding
+    (pair,) = made.clearances
+    assert pair.least < 0.0
+    overlap = f"one and two overlap by {-1e3 * pair.least:.1f} mm at {pair.least_at:.3f} s"
+    assert overlap in made.findings()
+    assert made.pair_rows()[0][2] == "not kept"
+
+
+def test_the_picture_names_signals_as_they_are_written(write: Write) -> None:
+    programs = {"one": ["go 0", "SetDO doLeft,1"], "two": ["WaitDI diFree,1", "go 1"]}
+    made = station(write(programs, '[links]\n"one.doLeft" = "two.diFree"\n'))
+    drawn = draw_station(made.station, made.run, made.actions, "svg").decode()
+    assert "<!-- one.doLeft -->" in drawn and "<!-- two.diFree -->" in drawn
 
 
 def test_an_interlock_is_proven_or_the_pair_of_moves_is_named(write: Write) -> None:
