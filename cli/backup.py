@@ -83,7 +83,14 @@ def _print(backup: Backup) -> None:
         told = (counted(kinds.count(kind), kind) for kind in dict.fromkeys(kinds))
         print_rich(f"signals: {', '.join(told)}")
     for key, (value, origin) in backup.motion.items():
-        print_rich(f"motion figure {key} = {value} ({origin})")
+        print_rich(f"motion figure {key} = {_figure(value)} ({origin})")
+
+
+def _figure(value: object) -> str:
+    """A figure without what binary fractions add to it."""
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_figure, value))}]"
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def _rows(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

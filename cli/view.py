@@ -76,7 +76,7 @@ def cspace(
     else:
         print_rich(
             f"{first} and {second} of {found.robot.name}, with {found.held}: nothing touches in "
-            f"{found.plane.free:.0%} of the plane",
+            f"{100.0 * found.plane.free:.0f} % of the plane",
             f"wrote {plot}",
         )
     warn_of(Note(note) for note in found.notes)

@@ -64,10 +64,10 @@ def draw_joint_plane(
         at = waypoints[:, plane.axes] * factors
         axes.plot(*at.T, "o", color=PATH, markerfacecolor="white", markersize=5)
         axes.plot(*at[:1].T, "s", color=STOP, markersize=5)
+        axes.set(xlim=x[[0, -1]], ylim=y[[0, -1]], title=title)
         _number(axes, at, numbers)
         for name, axis, (unit, _) in zip("xy", plane.axes, scale, strict=True):
             getattr(axes, f"set_{name}label")(f"{robot.axis_names[axis]}, {unit}")
-        axes.set(xlim=x[[0, -1]], ylim=y[[0, -1]], title=title)
         handles = [
             Patch(facecolor=TOUCHING, label="touching"),
             Patch(facecolor=NEAR, label=f"nearer than {1e3 * plane.clearance:g} mm"),
@@ -84,9 +84,13 @@ def _number(axes: Axes, at: FloatArray, numbers: Sequence[int]) -> None:
     ending: dict[tuple[float, float], list[str]] = {}
     for text, (x, y) in zip(["start", *map(str, numbers)], np.round(at, 1) + 0.0, strict=True):
         ending.setdefault((float(x), float(y)), []).append(text)
+    lowest, highest = axes.get_ylim()
     for point, texts in ending.items():
         shown = ", ".join(texts[:NAMED]) + (", …" if len(texts) > NAMED else "")
-        axes.annotate(shown, point, xytext=(5, 5), textcoords="offset points", fontsize=8)
+        # At the upper edge it would run into the title.
+        under = point[1] > highest - 0.03 * (highest - lowest)
+        by = (5, -11) if under else (5, 5)
+        axes.annotate(shown, point, xytext=by, textcoords="offset points", fontsize=8)
 
 
 def _unit(robot: Robot, axis: int) -> tuple[str, float]:

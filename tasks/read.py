@@ -87,7 +87,7 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         The program; it knows which robot it is for.
 
     Raises:
-        InputError: no robot is named, or the file is no program of its vendor.
+        InputError: no robot is named, or there is no such file, or it is no program of its vendor.
         SourceError: the text cannot be read; file, line and column are named.
         MotionError: a move that no robot can drive.
     """
@@ -100,7 +100,10 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
     try:
         setup = setup_of(options)
     except InputError as error:
-        if note is None or options.robot is not None or options.cell is not None:
+        if options.robot is not None or options.cell is not None:
+            raise
+        _check_it_is_a_program(source)
+        if note is None:
             raise
         raise type(error)(f"{error}; {note}") from None
     vendor, robot = setup.vendor, setup.robot
@@ -133,6 +136,17 @@ def _surrounding(source: str | Path) -> Note | None:
     if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
         return None
     return surrounding_note(Path(source), registry())
+
+
+def _check_it_is_a_program(source: str | Path) -> None:
+    """Refuse what no robot could make a program, before one is asked for."""
+    if isinstance(source, str) and ("\n" in source or not source):
+        return
+    path = Path(source)
+    if not path.exists():
+        raise InputError(f"{path}: there is no such file or folder")
+    if path.is_file():
+        registry().reader_of(path)
 
 
 def from_ready_posture(

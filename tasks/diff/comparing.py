@@ -25,6 +25,7 @@ from ...core.difference.data import (
 from ...core.difference.differences import Difference, Differing
 from ...core.difference.moves import move_differences
 from ...core.difference.texts import FileDifference, file_differences
+from ...core.errors import InputError
 from .state import Routine, StationState, state_of
 
 if TYPE_CHECKING:
@@ -99,6 +100,9 @@ class StateDifference:
 
 def compared(old: Path, new: Path, options: SourceOptions) -> StateDifference:
     """What differs between two states; see `diff.diff_with`."""
+    for path in (old, new):
+        if not path.exists():
+            raise InputError(f"{path}: there is no such file or folder")
     options.say(f"driving {old}")
     one = state_of(old, options)
     options.say(f"driving {new}")

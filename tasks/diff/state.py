@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError, InputError
+from ...core.errors import FlybyError
 from ...core.program.entry_point import ALL
 from ..backup.finding import find_backup
 from ..backup.opening import read_task, setup_in
@@ -85,8 +85,6 @@ def state_of(path: Path, options: SourceOptions) -> StationState:
 
 
 def _of_program(path: Path, options: SourceOptions) -> StationState:
-    if not path.exists():
-        raise InputError(f"{path}: there is no such file or folder")
     setup_of(options)  # asks for the robot
     names = _entries(path, options) if options.entry is None else [options.entry]
     routines = {}

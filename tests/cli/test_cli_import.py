@@ -111,3 +111,8 @@ def test_a_backup_says_which_robot_a_translated_program_is_for(
     result = flyby("translate", station / "RAPID/TASK1/PROGMOD/MainModule.mod", *words)
     assert result.exit_code == 2
     assert "Give --from" in result.output
+
+
+def test_figures_are_printed_without_what_binary_fractions_add(flyby: Flyby) -> None:
+    archive = Path(__file__).parents[2] / "examples/kuka_archive"
+    assert "time.joint_smoothing_s = [0.072, 0.072] (" in flyby("import", archive).output

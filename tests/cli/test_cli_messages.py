@@ -32,6 +32,19 @@ def test_a_folder_and_a_name_without_suffix_are_told(flyby: Flyby, tmp_path: Pat
     assert "no suffix" in flyby("emulate", tmp_path / "program", "--robot", ROBOT).stderr
 
 
+@pytest.mark.parametrize("command", ["emulate", "ask", "check", "view", "diff"])
+def test_what_is_no_program_is_told_before_a_robot_is_asked_for(
+    flyby: Flyby, tmp_path: Path, command: str
+) -> None:
+    words = (command, SQUARE) if command == "diff" else (command,)
+    result = flyby(*words, tmp_path / "mistyped.mod")
+    assert result.exit_code != 0
+    assert f"{tmp_path / 'mistyped.mod'}: there is no such file or folder" in result.stderr
+    if command != "diff":
+        (tmp_path / "cell.toml").write_text("", "utf-8")
+        assert "no vendor reads '.toml' files" in flyby(command, tmp_path / "cell.toml").stderr
+
+
 def test_a_start_beyond_a_limit_is_no_matter_of_targets(flyby: Flyby, small) -> None:
     result = flyby("emulate", small(), "--robot", ROBOT, "--start", "200,0,0,0,0,0")
     assert "the start: joint J1 would stand at 200.00 °, beyond its limit" in result.stderr
