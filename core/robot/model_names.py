@@ -7,8 +7,9 @@ from collections.abc import Iterable
 
 from .arm_list import Listed
 
-_NEAR = 0.051
-"""m by which reaches may differ that names round: an IRB 120-3/0.6 reaches 0.58 m."""
+_ROUNDED = 0.51
+"""Of its last digit, by which a reach may be off that a name rounds: an IRB 120-3/0.6 reaches
+0.58 m."""
 _LONGEST = 6.0
 """m, above which a number of a name is no reach."""
 _BESIDE = re.compile(
@@ -88,10 +89,16 @@ def _same(asked: str, said: str) -> bool:
         a, b = float(asked), float(said)
     except ValueError:
         return False
+    decimals = min(_decimals(asked), _decimals(said))
     if "." in said and "." not in asked:
         a /= 100.0  # libraries of simulators have reaches in cm
+        decimals = min(2, _decimals(said))
     lengths = "." in said and max(a, b) < _LONGEST
-    return a == b or (lengths and abs(a - b) < _NEAR)
+    return a == b or (lengths and abs(a - b) < _ROUNDED * 10.0**-decimals)
+
+
+def _decimals(word: str) -> int:
+    return len(word.partition(".")[2])
 
 
 def described(arm: Listed) -> str:

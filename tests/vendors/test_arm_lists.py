@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import flyby
-from flyby.core.errors import InputError
+from flyby.core.errors import InputError, UnknownNameError
 from flyby.core.registry import find_robot, installed
 from flyby.core.robot.catalogue import SPREAD, TRUST
 from flyby.testing.strategies import allowed
@@ -109,6 +109,13 @@ CALLED = {
 def test_names_that_people_and_controllers_write(name) -> None:
     assert installed().robot_called(name) == CALLED[name]
     assert find_robot(name).name == CALLED[name]
+
+
+@pytest.mark.parametrize("name", ["irb6640-180-254", "IRB 2400-10/1.60", "irb120-3/0.7"])
+def test_a_reach_is_rounded_and_not_guessed(name) -> None:
+    """Another reach is another arm, or a slip of the pen."""
+    with pytest.raises(UnknownNameError, match="did you mean"):
+        find_robot(name)
 
 
 def test_where_several_may_be_meant_they_are_offered() -> None:

@@ -237,8 +237,8 @@ def test_arms_that_are_not_known(tmp_path: Path) -> None:
     assert "no arm ROB1_6700_LeanID_2.65_220 is known; near it are" in lack
     assert "abb/irb6700-235-265 (235 kg, 2.65 m)" in lack and "robot=NAME" in lack
     assert backup.tasks[0].robot == 0
-    refused = opened(Station(moc=one_robot(kind="5400-12")).write(tmp_path / "b"))
-    assert refused.robots[0].robot is None
+    oblique = opened(Station(moc=one_robot(kind="580_16")).write(tmp_path / "b")).robots[0]
+    assert oblique.robot is None and "stand oblique to each other" in oblique.lacks[0]
     none = Station(moc={"ARM": arm_records()["ARM"]}, products=())
     lacks = opened(none.write(tmp_path / "c")).robots[0].lacks
     assert lacks[0] == "the backup does not say which arm it is: name one, robot=NAME"
