@@ -19,6 +19,8 @@ _TYPE = re.compile(
     r"_(?P<payload>\d+(?:\.\d+)?)(?:_(?P<after>\w+))?",
     re.IGNORECASE,
 )
+_OTHER = re.compile(r"ROB(?:\d+|_?[A-Z])?_(?P<rest>(?P<model>\d+).*)", re.IGNORECASE)
+"""A type that has not all of these: ``ROB1_580_16``."""
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _REVISION = re.compile(r"Type_?[A-Z]\d?", re.IGNORECASE)
 """A variant of the mechanics with the lengths of its type."""
@@ -113,7 +115,7 @@ def _names(written: str, options: Sequence[str]) -> list[str]:
     """Under which names to look, the surest first."""
     found = _TYPE.fullmatch(written)
     if found is None:
-        return list(dict.fromkeys([*([written] if written else []), *options]))
+        return _names_of_others(written, options)
     fitting = agreeing(written, options)
     said = [option[:3].upper() for option in fitting]
     names = []
@@ -124,3 +126,15 @@ def _names(written: str, options: Sequence[str]) -> list[str]:
         if variant and _REVISION.fullmatch(variant):
             names.append(f"{make} {plain}")
     return list(dict.fromkeys([written, names[0], *fitting, *names[1:]]))
+
+
+def _names_of_others(written: str, options: Sequence[str]) -> list[str]:
+    """Under which names to look for a type of another form, or of none.
+
+    A product of another model is another robot's, or the controller's former one.
+    """
+    other = _OTHER.match(written)
+    if other is None:
+        return list(dict.fromkeys([*([written] if written else []), *options]))
+    fitting = [option for option in options if other["model"] in _NUMBER.findall(option)[:1]]
+    return [written, *fitting, *(f"{make} {other['rest']}" for make in _MAKES)]

@@ -239,6 +239,9 @@ def test_arms_that_are_not_known(tmp_path: Path) -> None:
     assert backup.tasks[0].robot == 0
     oblique = opened(Station(moc=one_robot(kind="580_16")).write(tmp_path / "b")).robots[0]
     assert oblique.robot is None and "stand oblique to each other" in oblique.lacks[0]
+    # The controller's product is of another model: it is not this arm.
+    other = opened(Station(moc=one_robot(kind="9990_16")).write(tmp_path / "d")).robots[0]
+    assert other.robot is None and "no arm ROB1_9990_16 is known" in other.lacks[0]
     none = Station(moc={"ARM": arm_records()["ARM"]}, products=())
     lacks = opened(none.write(tmp_path / "c")).robots[0].lacks
     assert lacks[0] == "the backup does not say which arm it is: name one, robot=NAME"
