@@ -87,6 +87,8 @@ class TomlTable:
 
     def choice(self, key: str, choices: Collection[str], default: str | None = None) -> str:
         """A string out of ``choices``."""
+        if default is None and not self.has(key):
+            raise self.error(key, f"is missing: one of {', '.join(choices)}")
         value = self.text(key, default)
         if value not in choices:
             raise self.error(key, f"{value!r} is unknown; {_nearest(value, choices)}")

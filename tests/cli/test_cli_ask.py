@@ -79,3 +79,13 @@ def test_a_file_that_is_there_is_kept(flyby: Flyby, cell: Path) -> None:
     result = flyby("ask", cell, *ROBOT, "--out", cell, "--force")
     assert result.exit_code != 0
     assert cell.read_text("utf-8") == CELL
+
+
+def test_a_wait_that_takes_time_is_not_said_to_take_none(flyby: Flyby, tmp_path: Path) -> None:
+    station = Path(__file__).parents[2] / "examples/station"
+    known = "waiting takes no time here"
+    assert known in flyby("emulate", station, "--entry", "Pick").stderr
+    answers = tmp_path / "answers.toml"
+    answers.write_text('[durations]\n"WaitDI diPart,1" = 2\n', "utf-8")
+    result = flyby("emulate", station, "--entry", "Pick", "--io", answers)
+    assert known not in result.stderr and "cycle time 2.990 s" in result.stdout

@@ -45,6 +45,13 @@ def test_what_is_no_program_is_told_before_a_robot_is_asked_for(
         assert "no vendor reads '.toml' files" in flyby(command, tmp_path / "cell.toml").stderr
 
 
+def test_units_of_a_mesh_are_asked_for_by_name(flyby: Flyby, tmp_path: Path) -> None:
+    cell = tmp_path / "cell.toml"
+    cell.write_text(f'robot = "{ROBOT}"\n[[obstacle]]\nname = "a"\nmesh = "a.stl"\nunit = "m"\n')
+    told = flyby("emulate", SQUARE, "--cell", cell).stderr
+    assert "obstacle[1].units: is missing: one of " in told and "mm" in told
+
+
 def test_a_start_beyond_a_limit_is_no_matter_of_targets(flyby: Flyby, small) -> None:
     result = flyby("emulate", small(), "--robot", ROBOT, "--start", "200,0,0,0,0,0")
     assert "the start: joint J1 would stand at 200.00 °, beyond its limit" in result.stderr

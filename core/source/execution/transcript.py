@@ -155,8 +155,8 @@ class Transcript:
         """
         text = self.text_of(span)
         self.emit(Opaque(text, stops, span))
-        self.pause(text, span, listed=stops or device)
-        if why:
+        stands = self.pause(text, span, listed=stops or device)
+        if why and not stands:  # of what the user has said how long it takes, nothing is left out
             self.notes.count(f"{name} is kept and not carried out: {why}", span)
 
     def leave_out(self, span: Span, error: LeftOpenError) -> None:
@@ -180,17 +180,21 @@ class Transcript:
         if self.left_out and (not goals or (strict and one_place)):
             raise self.left_out[0]
 
-    def pause(self, text: str, span: Span, listed: bool = True) -> None:
+    def pause(self, text: str, span: Span, listed: bool = True) -> float:
         """The robot stands for as long as the user says that a statement takes.
 
         Args:
             text: of the statement.
             span: of it.
             listed: whether it is listed among the program's questions.
+
+        Returns:
+            s; 0 where nobody says it.
         """
         duration = self._course.pause(text, span, listed)
         if duration:
             self.emit(Wait(duration, span, device=True))
+        return duration
 
     def leaves_open(self, error: SourceError, span: Span) -> bool:
         """A move cannot be read: it stays in the program, open, where programs go on behind such.
