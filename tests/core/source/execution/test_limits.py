@@ -21,8 +21,7 @@ def test_the_meter_stops_at_its_limits_and_not_before(
     row = driven = 0
     for step in steps:
         row, driven = (0, driven + 1) if step == "move" else (row + 1, driven)
-        # The first of them had not been before.
-        if row > statements or driven - 1 > moves:
+        if row > statements or driven - 1 > moves:  # a move counts when it is driven again
             with pytest.raises(SourceError, match=r"a\.mod:7:3.*has not ended") as caught:
                 getattr(meter, step)(SPAN)
             assert caught.value.span == SPAN
