@@ -1,4 +1,4 @@
-/*! flyby viewer, built from viewer/ sha256:22c4840da9ea151b1274eb800789deab68ea00177bc43e2cc86c6a805460b527
+/*! flyby viewer, built from viewer/ sha256:a5af47807427e4e0f17e7acb759865102d254c1df3d158fc8622ffd3d051f9a0
 
 three 0.187.0
 
@@ -105,7 +105,7 @@ small { font-size: 11px; color: var(--quiet); font-weight: 400; }
 .shares { flex: 1 50 160px; min-width: 60px; max-width: 420px; overflow: hidden; }
 .stack { display: flex; height: 8px; gap: 1px; border-radius: 2px; overflow: hidden; }
 .stack i { min-width: 2px; }
-.names { display: flex; gap: 12px; font-size: 11px; color: var(--quiet); margin-top: 2px; white-space: nowrap; overflow: hidden; }
+.names { display: flex; flex-wrap: wrap; gap: 0 12px; font-size: 11px; color: var(--quiet); margin-top: 2px; white-space: nowrap; line-height: 1.15; overflow: hidden; }
 .names i, .key i { display: inline-block; width: 9px; height: 9px; border-radius: 2px; margin-right: 4px; }
 .names b, .key b { color: var(--ink); font-weight: 600; font-variant-numeric: tabular-nums; }
 .choice { display: flex; gap: 6px; }
