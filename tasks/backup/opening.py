@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -78,9 +79,9 @@ def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
     Raises:
         InputError: the backup does not say which robot it is, or flyby does not know it.
     """
-    if options.robot is not None or options.cell is not None:
-        return setup_of(options)
     index = 0 if task.robot is None else task.robot
+    if options.robot is not None or options.cell is not None:
+        return _as_backed_up(backup, index, setup_of(options), options)
     if not 0 <= index < len(backup.robots):
         raise OptionError(
             f"{backup.source}: it does not say which robot it is of; give {spelt('robot')}"
@@ -93,6 +94,16 @@ def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
         raise OptionError(f"{backup.source}: {why}{'' if spelt('robot') in why else way}")
     vendor = registry().find_vendor(backup.vendor).with_stated(known.robot, backup.motion)
     return laid_on(Setup(vendor, known.robot), options)
+
+
+def _as_backed_up(backup: Backup, index: int, made: Setup, options: RobotOptions) -> Setup:
+    """A setup that options name, with what the backup states of how that same arm is driven."""
+    known = backup.robots[index].robot if 0 <= index < len(backup.robots) else None
+    said = options.motion is not None or options.machine_data is not None
+    said = said or (made.cell is not None and made.cell.motion is not None)
+    if said or known is None or known.name != made.robot.name or backup.vendor != made.vendor.name:
+        return made
+    return replace(made, vendor=made.vendor.with_stated(made.robot, backup.motion))
 
 
 def read_task(

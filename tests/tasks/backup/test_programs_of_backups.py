@@ -159,3 +159,12 @@ def test_places_ask_for_one_of_both() -> None:
     places = FilePlaces(Path("a.zip"), True, [], False)
     with pytest.raises(OptionError, match="one place or the other"):
         places.check()
+
+
+def test_a_cell_leaves_how_the_archive_says_its_arm_is_driven() -> None:
+    """A file of what stands around does not take the controller's filters away."""
+    examples = Path(__file__).parents[3] / "examples"
+    press = {"source": examples / "kuka_archive", "entry": "PRESS"}
+    alone = flyby.emulate(flyby.read(**press)).duration
+    for named in ({"cell": examples / "cell/press.toml"}, {"robot": "kuka/kr16-2"}):
+        assert flyby.emulate(flyby.read(**press, **named)).duration == pytest.approx(alone)
