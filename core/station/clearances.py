@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
 from ..collision.mutual.pair_proof import Meetings, PairProver, PairVerdict
 from ..collision.mutual.robot_motion import RobotMotion
 from .actions import Action
@@ -124,6 +124,9 @@ class StationProver:
         until = at + _SAMPLED[0] if least < clearance else np.inf
         meetings = Meetings(clocks, 2.0 * jitter, every=False, until=until)
         in_time = prover.prove(clearance, meetings)
+        if in_time.proven and until < np.inf:
+            # What samples took for too near is not: nothing behind it is known yet.
+            in_time = prover.prove(clearance, replace(meetings, until=np.inf))
         any_time = prover.prove(clearance, Meetings.at_any_time())
         interlocked = None
         if orders is not None and not any_time.proven:
@@ -162,8 +165,8 @@ class StationProver:
         first, least, at = 0.0, np.inf, 0.0
         for finer in _SAMPLED:
             t = np.arange(first, last + step, finer)
-            q = [self._at(schedule, t) for schedule in schedules]
-            found, k, _ = prover.nearest(q[0], q[1])
+            (one, first_moves), (other, other_moves) = (self._at(s, t) for s in schedules)
+            found, k, _ = prover.nearest(one, other, (first_moves, other_moves))
             if found < least:
                 least, at = found, float(t[k])
             first, last, step = max(at - finer, 0.0), at + finer, finer
@@ -175,9 +178,12 @@ class StationProver:
             return schedule.end
         return schedule.waits[-1].begin
 
-    def _at(self, schedule: Schedule, t: FloatArray) -> FloatArray:
+    def _at(self, schedule: Schedule, t: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Configurations, and moves, of a robot at times (T,) s of the station."""
         trajectory, own = self._station.members[schedule.name].run.trajectory, schedule.own(t)
-        return np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
+        row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
+        q = np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
+        return q, trajectory.move[row]
 
 
 def _own(a: str, b: str, one: str, other: str) -> tuple[str, str] | None:

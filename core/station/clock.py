@@ -126,7 +126,6 @@ class _Robot:
     lag: float
     next: int = 0
     since: float | None = None
-    meets: dict[str, int] = field(default_factory=dict)
     waits: list[Spell] = field(default_factory=list)
     end: float = np.inf
 
@@ -140,6 +139,13 @@ class _Robot:
     @property
     def current(self) -> Action:
         return self.actions[self.next]
+
+    def waits_at(self, meet: Meet) -> bool:
+        """Whether it waits for others at a meeting of this name."""
+        if self.since is None:
+            return False
+        does = self.current.does
+        return isinstance(does, Meet) and does.label == meet.label
 
 
 class StationClock:
@@ -175,7 +181,6 @@ class StationClock:
         self._count = 0
         self._changes: list[SignalChange] = []
         self._notes: dict[str, Note] = {}
-        self._arrived: dict[tuple[str, int], list[str]] = {}
 
     def run(self) -> StationRun:
         """From all robots' beginnings to where nothing happens any more.
@@ -228,14 +233,11 @@ class StationClock:
                 self._meet(robot, action.does, now)
 
     def _meet(self, robot: _Robot, meet: Meet, now: float) -> None:
-        count = robot.meets.get(meet.label, 0)
-        robot.meets[meet.label] = count + 1
         robot.since = now
-        there = self._arrived.setdefault((meet.label, count), [])
-        there.append(robot.name)
-        if set(there) >= set(self.parties(robot.name, meet)):
-            for name in there:
-                self._go_on(self._robots[name], now)
+        parties = [self._robots[name] for name in self.parties(robot.name, meet)]
+        if all(party.waits_at(meet) for party in parties):
+            for party in parties:
+                self._go_on(party, now)
 
     def parties(self, name: str, meet: Meet) -> list[str]:
         """The robots of a meeting."""

@@ -22,21 +22,30 @@ from ..errors import InputError
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
 from .gates import Gate, GateKind, Input
-from .plc import PLC
+from .plc import PLC, ROUNDS
 from .station import RobotStation, signal_key
 
 _MOST_STATES = 300_000
-_ON_THE_WAY = 3
-"""Changes of one signal that may be on their way at once; of more, two undo each other."""
+_ON_THE_WAY = 8
+"""Changes on their way along one wire that are counted; this many, or one less, may be more."""
 
 
 class _State(NamedTuple):
-    """Where everything is."""
+    """Where everything is.
+
+    Args:
+        at: how many of its actions each robot has passed.
+        levels: keys of the signals that are on.
+        pending: changes on their way along each wire.
+        counts: of each gate that counts.
+        pulses: keys of signals whose pulses have not ended, and what they are then.
+    """
 
     at: tuple[int, ...]
     levels: frozenset[str]
     pending: tuple[int, ...]
     counts: tuple[int, ...]
+    pulses: tuple[tuple[str, bool], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -75,7 +84,7 @@ def explore(station: RobotStation, actions: Mapping[str, Sequence[Action]]) -> O
         actions: of each robot.
 
     Raises:
-        InputError: there are too many to look at, or one signal changes faster than wires carry.
+        InputError: there are too many to look at, or the PLC's logic never comes to rest.
     """
     return _Explorer(station, actions).all()
 
@@ -110,7 +119,8 @@ class _Explorer:
             (0,) * len(self._wires),
             (0,) * len(self._gates),
         )
-        queue, seen = deque([self._settled(first, first.levels)]), set()
+        unseen = [False] * len(self._gates)
+        queue, seen = deque([self._settled(first, first.levels, unseen)]), set()
         seen.add(queue[0])
         stuck: list[tuple[int, ...]] = []
         while queue:
@@ -134,7 +144,10 @@ class _Explorer:
     def _successors(self, state: _State) -> Iterator[_State]:
         for k, pending in enumerate(state.pending):
             if pending:
-                yield self._delivered(state, k)
+                yield from self._delivered(state, k, pending)
+        for k, (key, on) in enumerate(state.pulses):
+            left = state.pulses[:k] + state.pulses[k + 1 :]
+            yield self._changed(state._replace(pulses=left), key, on)
         for name, gate in self._gates:
             if gate.kind is GateKind.TIMER:
                 key = signal_key(f"{PLC}.{name}")
@@ -149,43 +162,34 @@ class _Explorer:
         match action.does:
             case SetSignal(name, value, pulse):
                 key = signal_key(f"{self._names[k]}.{name}")
-                after = self._changed(onward, key, bool(value))
-                yield after
                 if pulse is not None:
-                    # It may have ended before anybody has seen anything else.
-                    yield self._changed(after, key, not bool(value))
+                    pulses = tuple(sorted((*onward.pulses, (key, not bool(value)))))
+                    onward = onward._replace(pulses=pulses)
+                yield self._changed(onward, key, bool(value))
             case WaitSignal(condition, longest):
                 if longest is not None or self._met(state.levels, self._names[k], condition):
                     yield onward
-            case Meet(label, _):
-                yield from self._together(state, k, label)
+            case Meet():
+                yield from self._together(state, k, action.does)
 
-    def _together(self, state: _State, k: int, label: str) -> Iterator[_State]:
+    def _together(self, state: _State, k: int, meet: Meet) -> Iterator[_State]:
         """All robots of a meeting go on at once, when they are all there."""
-        parties = self._parties(k, label)
-        first = min(parties)
-        if k != first:
-            return
+        parties = self._parties(k, meet)
         for party in parties:
             actions = self._actions[party]
             at = state.at[party]
             does = actions[at].does if at < len(actions) else None
-            if not isinstance(does, Meet) or does.label != label:
+            if not isinstance(does, Meet) or does.label != meet.label:
                 return
         yield state._replace(at=_stepped(state.at, parties))
 
-    def _parties(self, k: int, label: str) -> tuple[int, ...]:
-        own = next(
-            action.does
-            for action in self._actions[k]
-            if isinstance(action.does, Meet) and action.does.label == label
-        )
-        if own.parties is not None:
-            return tuple(p for p in own.parties if p < len(self._names)) or (k,)
+    def _parties(self, k: int, meet: Meet) -> tuple[int, ...]:
+        if meet.parties is not None:
+            return tuple(p for p in meet.parties if p < len(self._names)) or (k,)
         return tuple(
             p
             for p, actions in enumerate(self._actions)
-            if any(isinstance(a.does, Meet) and a.does.label == label for a in actions)
+            if any(isinstance(a.does, Meet) and a.does.label == meet.label for a in actions)
         )
 
     def _met(self, levels: frozenset[str], robot: str, condition: Condition) -> bool:
@@ -197,45 +201,51 @@ class _Explorer:
             return True
         return (key in levels) == condition.on
 
-    def _delivered(self, state: _State, k: int) -> _State:
-        """A change reaches its target."""
-        _, target = self._wires[k]
-        pending = list(state.pending)
-        pending[k] -= 1
-        on = target not in state.levels
-        return self._changed(state._replace(pending=tuple(pending)), target, on)
+    def _delivered(self, state: _State, k: int, pending: int) -> Iterator[_State]:
+        """A change reaches its target: with what the source was then."""
+        source, target = self._wires[k]
+        on = (source in state.levels) == (pending % 2 == 1)
+        left = [pending - 1]
+        if pending == _ON_THE_WAY - 1:
+            left.append(_ON_THE_WAY)
+        for count in left:
+            after = (*state.pending[:k], count, *state.pending[k + 1 :])
+            yield self._changed(state._replace(pending=after), target, on)
 
     def _changed(self, state: _State, key: str, on: bool) -> _State:
         if (key in state.levels) == on:
             return state
+        held = [any(_holds(state.levels, one) for one in gate.inputs) for _, gate in self._gates]
         levels = state.levels | {key} if on else state.levels - {key}
-        return self._settled(state._replace(levels=levels), state.levels)
+        return self._settled(state._replace(levels=levels), state.levels, held)
 
-    def _settled(self, state: _State, before: frozenset[str]) -> _State:
+    def _settled(self, state: _State, before: frozenset[str], held: list[bool]) -> _State:
         """Gates follow, and what changed goes on its way."""
-        counts = list(state.counts)
+        counts, pending = list(state.counts), list(state.pending)
         levels = set(state.levels)
-        seen = set(before)
-        for _ in range(len(self._gates) + 1):
+        for key in levels ^ before:
+            self._sent(key, pending)
+        for _ in range(ROUNDS):
             changed = False
             for g, (name, gate) in enumerate(self._gates):
                 key = signal_key(f"{PLC}.{name}")
-                on = self._gate(g, key, gate, levels, seen, counts)
-                if on != (key in levels):
+                if self._gate(g, key, gate, levels, held, counts) != (key in levels):
                     levels ^= {key}
+                    self._sent(key, pending)
                     changed = True
-            seen = set(levels)
             if not changed:
-                break
-        pending = list(state.pending)
-        moved = levels ^ before
+                return state._replace(
+                    levels=frozenset(levels), pending=tuple(pending), counts=tuple(counts)
+                )
+        raise InputError("the PLC's logic does not come to rest in every order of signals")
+
+    def _sent(self, key: str, pending: list[int]) -> None:
         for k, (source, _) in enumerate(self._wires):
-            if source in moved:
+            if source == key:
                 pending[k] += 1
                 if pending[k] > _ON_THE_WAY:
-                    # Two changes that nobody has seen undo each other.
+                    # What the source is stays what it is for two less.
                     pending[k] -= 2
-        return _State(state.at, frozenset(levels), tuple(pending), tuple(counts))
 
     def _gate(
         self,
@@ -243,10 +253,11 @@ class _Explorer:
         key: str,
         gate: Gate,
         levels: set[str],
-        before: set[str],
+        held: list[bool],
         counts: list[int],
     ) -> bool:
         holds = [_holds(levels, one) for one in gate.inputs]
+        rises, held[g] = any(holds) and not held[g], any(holds)
         match gate.kind:
             case GateKind.AND:
                 return all(holds)
@@ -256,7 +267,7 @@ class _Explorer:
                 reset = any(_holds(levels, one) for one in gate.resets)
                 return not reset and (key in levels or any(holds))
             case GateKind.COUNTER:
-                if any(holds) and not any(_holds(before, one) for one in gate.inputs):
+                if rises:
                     counts[g] = min(counts[g] + 1, gate.least)
                 if any(_holds(levels, one) for one in gate.resets):
                     counts[g] = 0

@@ -11,7 +11,7 @@ from .station import signal_key
 
 PLC = "plc"
 """What gates are outputs of."""
-_ROUNDS = 64
+ROUNDS = 64
 """Changes of gates within one instant after which they are said to swing."""
 
 
@@ -44,7 +44,7 @@ class Plc:
         """
         changes: list[tuple[str, bool]] = []
         later: list[float] = []
-        for _ in range(_ROUNDS):
+        for _ in range(ROUNDS):
             changed = False
             for name, gate in self.gates.items():
                 key = signal_key(f"{PLC}.{name}")

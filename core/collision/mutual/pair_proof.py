@@ -167,8 +167,11 @@ class PairProver:
         """
         return _Search(self, clearance, meetings, budget).run()
 
-    def measure(self, items: IntArray, found: PairBounds) -> None:
-        """Distances and normals of items at the middles, by the engine."""
+    def measure(self, items: IntArray, wanted: float, found: PairBounds) -> None:
+        """Distances and normals of items at the middles, by the engine.
+
+        What is so far apart that the two keep ``wanted`` m all along is not measured any further.
+        """
         for k in range(len(items)):
             i, j, row = items[k]
             a, b = self.pairs[row]
@@ -180,18 +183,22 @@ class PairProver:
             second = len(self.one.bodies) + b
             R[a], R[second] = np.reshape(Ra, (3, 3)), np.reshape(Rb, (3, 3))
             p[a], p[second] = pa, pb
-            within = self.one.side.swept.motion[i, a] + self.other.side.swept.motion[j, b] + 0.1
+            motion = self.one.side.swept.motion[i, a] + self.other.side.swept.motion[j, b]
+            within = motion + wanted + ROUNDING
             witness = self._engine.distance(int(a), int(second), BodyPoses(R, p), within)
             if witness is None:
                 found.distance[k] = within
             else:
                 found.distance[k], found.normal[k] = witness.distance, witness.normal
 
-    def nearest(self, q: FloatArray, other: FloatArray) -> tuple[float, int, int]:
+    def nearest(
+        self, q: FloatArray, other: FloatArray, moves: tuple[IntArray, IntArray] | None = None
+    ) -> tuple[float, int, int]:
         """The least distance at instants at which both stand somewhere.
 
         Args:
             q, other: (T, N), (T, M), configurations of the one and of the other.
+            moves: (T,) each, the moves that they are on, where bodies are only there on some.
 
         Returns:
             m, the instant and the row of `pairs`.
@@ -208,6 +215,9 @@ class PairProver:
             hulls = Hulls(*map(np.concatenate, zip(*(s.hulls for s in sides), strict=True)))
             found = Distances.farther(len(R), len(self.pairs), least[0])
             bound = measure(hulls, self.pairs + shift, R, p, least[0], found.numbers)
+            if moves is not None:
+                gone = ~self._there(moves[0][part], moves[1][part])
+                found.distance[gone] = bound[gone] = np.inf
             k, row = np.unravel_index(int(found.distance.argmin()), found.distance.shape)
             if found.distance[k, row] < least[0]:
                 least = float(found.distance[k, row]), start + int(k), int(row)
@@ -221,6 +231,11 @@ class PairProver:
                 if witness is not None:
                     least = float(witness.distance), start + k, row
         return least
+
+    def _there(self, moves: IntArray, other: IntArray) -> NDArray[np.bool_]:
+        """(T, P), whether both bodies of a pair are there on moves (T,)."""
+        first, second = self.pairs.T
+        return np.asarray(self.one.there(moves)[:, first] & self.other.there(other)[:, second])
 
     def names(self, row: int) -> tuple[str, str]:
         """Names of the bodies of a pair."""
@@ -297,7 +312,7 @@ class _Search:
         asked = found.engine & ~(found.lower >= self._wanted) & (motion.sum(axis=1) < _WIDE)
         if asked.any():
             chosen = found.chosen(asked)
-            prover.measure(items[asked], chosen)
+            prover.measure(items[asked], self._wanted, chosen)
             bound_measured(*sides, items[asked], prover.pairs, chosen)
             for whole, part in zip(found, chosen, strict=True):
                 whole[asked] = part

@@ -13,7 +13,6 @@ from ...cell.cell import Cell
 from ...errors import InputError
 from ...motion.emulator.controller import Controller
 from ...motion.emulator.run import Run
-from ...motion.timing.timing import Timing
 from ...robot.shape import Sphere
 from ...spatial.pose import IDENTITY
 from ..deviation.bounds import Deviation, DeviationBounds, by_interval, parts_of
@@ -24,6 +23,7 @@ from ..scene.bodies import Body, BodyKind, bodies_of
 from ..scene.frames import WORLD, frame_tree, place_bodies
 from ..scene.outline import outlines_of
 from .pair_bounds import Side
+from .passing_times import PassingTimes
 from .swept_intervals import SweptIntervals, sweep_intervals
 
 _STRIDE = 0.1
@@ -93,8 +93,9 @@ class RobotMotion:
         still = Body("", "", "", BodyKind.OBSTACLE, WORLD, Sphere(1.0), IDENTITY)
         outlines = outlines_of([*(own.body for own in self.bodies), still])
         places = np.array([own.body.placement.matrix() for own in self.bodies])
-        self._times = _knot_times(run.timing)
-        self._deviations = _deviations(controller, run, any_speed)
+        deviation = Deviation.of(controller, run)
+        self._times = PassingTimes(run.timing, deviation.smoothing)
+        self._deviations = _deviations(deviation, run, any_speed)
         self._intervals = self._enclosure.over([(0.0, float(run.path.sigma[-1]))])
         self._side = Side(
             SweptIntervals.empty(0, len(self.bodies), len(self._tree.parent)),
@@ -155,6 +156,10 @@ class RobotMotion:
         at = self._side.rotation, self._side.translation
         R, p = place_bodies(self._tree, frames, *at, np.ascontiguousarray(q))
         return R, p
+
+    def there(self, moves: IntArray) -> NDArray[np.bool_]:
+        """Which bodies are there on moves (T,), (T, B): those of a tool only where it is driven."""
+        return np.asarray(self._tools[moves])
 
     def halved(self, which: IntArray) -> tuple[IntArray, NDArray[np.bool_]]:
         """The first of the two halves of intervals (K,); they are made when first asked for.
@@ -223,45 +228,14 @@ def _bodies(
     return list(found.values()), present.reshape(len(run.program.moves), len(found))
 
 
-def _deviations(controller: Controller, run: Run, any_speed: bool) -> list[DeviationBounds]:
-    deviation, pieces = Deviation.of(controller, run), run.path.pieces
+def _deviations(deviation: Deviation, run: Run, any_speed: bool) -> list[DeviationBounds]:
+    pieces = run.path.pieces
     found = []
     for part in parts_of(run.path):
         first, last = (int(k) for k in pieces.first_interval[list(part)])
         bounds = deviation.over(first, last)
         found += list(bounds if any_speed else bounds[:1])
     return found
-
-
-class _KnotTimes:
-    """When the places of a path are passed at the emulated timing.
-
-    Args:
-        sigma: (K + 1,), of the knots.
-        reached, left: (K + 1,) s, when each is come to, and gone from.
-    """
-
-    def __init__(self, sigma: FloatArray, reached: FloatArray, left: FloatArray) -> None:
-        self._sigma, self._reached, self._left = sigma, reached, left
-
-    def over(self, begin: FloatArray, end: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """From when to when the motion is between two places at the most, (M,) s each."""
-        before = np.clip(np.searchsorted(self._sigma, begin, "right") - 1, 0, None)
-        behind = np.clip(np.searchsorted(self._sigma, end, "left"), None, len(self._sigma) - 1)
-        before = np.searchsorted(self._sigma, self._sigma[before], "left")
-        behind = np.searchsorted(self._sigma, self._sigma[behind], "right") - 1
-        return self._reached[before], self._left[behind]
-
-
-def _knot_times(timing: Timing) -> _KnotTimes:
-    path = timing.path
-    sample = timing.intervals.sample
-    sigma = np.append(path.sigma[sample], path.sigma[-1])
-    lag = timing.lag
-    driven = timing.start.driven
-    reached = np.append(-np.inf, driven(timing.end) + lag)
-    left = np.append(driven(timing.begin) + lag, np.inf)
-    return _KnotTimes(sigma, reached, left)
 
 
 def _chosen(intervals: EnclosedIntervals, which: NDArray[np.bool_] | IntArray) -> EnclosedIntervals:

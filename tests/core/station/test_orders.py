@@ -1,0 +1,140 @@
+"""Orders hold every state that a play of the same rules in time can come to."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from flyby.core.errors import InputError
+from flyby.core.program.signal import Level, Meet, SetSignal, WaitSignal
+from flyby.core.station.actions import Action
+from flyby.core.station.clock import StationClock
+from flyby.core.station.gates import Gate, GateKind, Input
+from flyby.core.station.orders import explore
+from flyby.core.station.station import RobotStation, Wire
+
+Doings = dict[str, tuple[Action, ...]]
+
+
+def on(name: str, pulse: float | None = None) -> SetSignal:
+    return SetSignal(name, True, pulse)
+
+
+def off(name: str) -> SetSignal:
+    return SetSignal(name, False)
+
+
+def wait(name: str, level: bool = True) -> WaitSignal:
+    return WaitSignal(Level(name, level))
+
+
+def station(programs: dict[str, list[Any]], **joined: Any) -> tuple[RobotStation, Doings]:
+    """Robots that do one thing a second."""
+    actions = {
+        name: tuple(
+            Action(does, 1.0 + k, k, str(does), None)
+            for k, does in enumerate(doings)
+            if does is not None
+        )
+        for name, doings in programs.items()
+    }
+    members = {
+        name: SimpleNamespace(
+            run=SimpleNamespace(duration=2.0 + len(doings), timing=SimpleNamespace(lag=0.0)),
+            begins=0.0,
+        )
+        for name, doings in programs.items()
+    }
+    return RobotStation(members, **joined), actions  # type: ignore[arg-type]
+
+
+def ends(made: RobotStation, actions: Doings) -> bool:
+    """Whether all robots come to their ends; orders hold what the clock passes."""
+    orders = explore(made, actions)
+    run = StationClock(made, actions).run()
+    last = tuple(map(len, actions.values()))
+    if not run.stuck:
+        assert last in orders.reachable
+    return last in orders.reachable
+
+
+def test_a_change_brings_what_the_source_is_then() -> None:
+    """The output was on, and the input off: going off, it does not switch the input on."""
+    wires = (Wire("a.x", "b.y"),)
+    programs = {"a": [off("x")], "b": [wait("y")]}
+    made, actions = station(programs, wires=wires, initial=frozenset({"a.x"}))
+    assert not ends(made, actions)
+
+
+def test_two_outputs_on_one_input() -> None:
+    wires = (Wire("a.x", "c.y"), Wire("b.x", "c.y"))
+    programs = {"a": [on("x")], "b": [None, on("x")], "c": [None, None, None, wait("y")]}
+    made, actions = station(programs, wires=wires)
+    assert ends(made, actions)
+    orders = explore(made, actions)
+    assert max(orders.reachable)[:2] == (1, 1) and not orders.stuck
+
+
+def test_a_pulse_may_end_after_another_robot_has_seen_it() -> None:
+    gates = {
+        "held": Gate(GateKind.AND, (Input("a.x"), Input("b.seen"))),
+        "let": Gate(GateKind.AND, (Input("b.seen"), Input("a.x", False))),
+    }
+    wires = (Wire("a.x", "b.y"), Wire("plc.held", "b.held"), Wire("plc.let", "c.let"))
+    programs = {
+        "a": [on("x", 1.7)],
+        "b": [wait("y"), on("seen"), wait("held", False)],
+        "c": [wait("let")],
+    }
+    made, actions = station(programs, wires=wires, gates=gates)
+    assert ends(made, actions)
+
+
+@pytest.mark.parametrize("names", [("full", "any"), ("any", "full")])
+def test_counters_count_what_gates_behind_them_bring(names: tuple[str, str]) -> None:
+    made_of = {
+        "any": Gate(GateKind.OR, (Input("a.x"), Input("a.z"))),
+        "full": Gate(GateKind.COUNTER, (Input("plc.any"),), least=2),
+    }
+    gates = {name: made_of[name] for name in names}
+    programs = {"a": [on("x"), off("x"), on("z"), off("z")], "b": [wait("go")]}
+    made, actions = station(programs, wires=(Wire("plc.full", "b.go"),), gates=gates)
+    assert ends(made, actions)
+
+
+def test_a_counter_counts_what_is_on_at_the_beginning() -> None:
+    gates = {"full": Gate(GateKind.COUNTER, (Input("a.x"),), least=2)}
+    programs = {"a": [off("x"), on("x")], "b": [wait("go")]}
+    made, actions = station(
+        programs, wires=(Wire("plc.full", "b.go"),), gates=gates, initial=frozenset({"a.x"})
+    )
+    assert ends(made, actions)
+
+
+def test_many_changes_that_nobody_has_seen_yet() -> None:
+    """The third robot goes on when the first has done all: by then no change has arrived."""
+    toggles = [does for _ in range(6) for does in (on("x"), off("x"))]
+    wires = (Wire("a.x", "b.y", 20.0, 20.0), Wire("a.done", "b.go"))
+    waits = [does for _ in range(6) for does in (wait("y"), wait("y", False))]
+    programs = {"a": [*toggles, on("done")], "b": [wait("go"), *waits]}
+    made, actions = station(programs, wires=wires)
+    assert ends(made, actions)
+
+
+def test_meetings_of_one_name_among_others() -> None:
+    programs = {
+        "a": [Meet("m", (0, 1)), Meet("m", (0, 2))],
+        "b": [Meet("m", (0, 1))],
+        "c": [None, Meet("m", (0, 2))],
+    }
+    made, actions = station(programs)
+    assert ends(made, actions)
+
+
+def test_logic_that_never_rests_is_refused() -> None:
+    gates = {"a": Gate(GateKind.AND, (Input("plc.a", False), Input("a.x")))}
+    made, actions = station({"a": [on("x")], "b": [wait("y")]}, gates=gates)
+    with pytest.raises(InputError, match="rest"):
+        explore(made, actions)
