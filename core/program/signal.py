@@ -98,7 +98,9 @@ class Meet:
         label: of the meeting.
         parties: indices of the robots that meet, in the station's order; None for all that have a
             meeting of the name.
+        coordinated: whether the controller times the moves behind it with the others'.
     """
 
     label: str
     parties: tuple[int, ...] | None = None
+    coordinated: bool = False

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import IntArray
 from ..dialect import SignalWords
 from ..errors import Span
 from ..motion.emulator.run import Run
+from ..motion.geometry.pieces import WAYPOINT
 from ..program.event import Event, EventAnchor
 from ..program.move import Move, Opaque, Wait
 from ..program.signal import Meet, SetSignal, SignalAction
@@ -26,6 +29,7 @@ class Action:
         move: index of the move before; -1 before the first.
         text: as it stands in the source.
         span: where.
+        earliest: s, when the program may be there already; None for not before `time`.
     """
 
     does: SignalAction | Meet
@@ -33,13 +37,19 @@ class Action:
     move: int
     text: str
     span: Span | None
+    earliest: float | None = None
+
+    @property
+    def soonest(self) -> float:
+        """s, before which it is not done."""
+        return self.time if self.earliest is None else self.earliest
 
 
 def actions_of(run: Run, words: SignalWords | None) -> tuple[Action, ...]:
     """What a driven program does, in the order of its own clock.
 
-    Outputs that are set at a fly-by point count at the zone's middle, though the program pointer
-    may be there earlier. Waits count when the robot has come to rest.
+    Outputs that are set at a fly-by point count at the zone's middle; the program may be there
+    from where the zone begins. Waits count when the robot has come to rest.
 
     Args:
         run: the whole program as driven.
@@ -67,7 +77,9 @@ def _between(run: Run, words: SignalWords, places: _Places) -> Iterator[Action]:
                 continue
             reached, left = places.of(move)
             time = max(reached, left - total.get(move, 0.0) + waited)
-            yield Action(does, time, move, _in_a_line(statement.text), statement.span)
+            earliest = places.entered(move) if isinstance(does, SetSignal) else time
+            text = _in_a_line(statement.text)
+            yield Action(does, time, move, text, statement.span, min(earliest, time))
 
 
 def _waits(run: Run) -> dict[int, float]:
@@ -92,6 +104,30 @@ def _on_the_way(run: Run, words: SignalWords, places: _Places) -> Iterator[Actio
                 yield Action(does, time, index, _in_a_line(event.text), event.span)
 
 
+def unknown_of(
+    run: Run, words: SignalWords | None, names: Iterable[str]
+) -> Iterator[tuple[str, Span | None]]:
+    """Statements that name a signal, and of which nobody knows what they do to it.
+
+    Args:
+        run: the program as driven.
+        words: how its language says such things; None if nobody knows, and nothing is found.
+        names: of signals that others look at.
+    """
+    if words is None:
+        return
+    named = [re.escape("".join(name.split())) for name in names]
+    one = re.compile(rf"(?<![\w$])(?:{'|'.join(named)})(?!\w)", re.IGNORECASE)
+    told = [s for s in run.program.statements if isinstance(s, Opaque)]
+    events = [event for move in run.program.moves for event in move.events]
+    texts = [(s.text, s.text, s.span) for s in told]
+    texts += [(event.text, words.event(event.text), event.span) for event in events]
+    for text, meant, span in texts:
+        bare = re.sub(r'"[^"]*"|\s', "", text)
+        if words.read(meant) is None and named and one.search(bare):
+            yield _in_a_line(text), span
+
+
 class _Places:
     """When a run is at its waypoints, and at places before and behind them."""
 
@@ -105,6 +141,7 @@ class _Places:
         self._moves = list(route.moves)
         self._reached = driven(timing.end[last])
         self._left = np.append(driven(timing.begin[first])[1:], run.duration)
+        self._entered = driven(np.append(timing.begin, timing.end[-1])[_zone_begins(run)])
         self._begun = float(driven(timing.begin[first[:1]])[0])
         trajectory = run.trajectory
         steps = np.linalg.norm(np.diff(trajectory.position, axis=0), axis=1)
@@ -117,6 +154,13 @@ class _Places:
             return 0.0, self._begun
         return float(self._reached[k]), float(self._left[k])
 
+    def entered(self, move: int) -> float:
+        """When the zone at the end of a move begins, s; at a stop when that is reached."""
+        k = bisect_right(self._moves, move) - 1
+        if k < 0:
+            return self.of(move)[0]
+        return min(float(self._entered[k]), float(self._reached[k]))
+
     def passed(self, move: int, event: Event) -> float:
         """When the place of an event is passed, s."""
         begin, end = self.of(move - 1)[1], self.of(move)[0]
@@ -127,6 +171,15 @@ class _Places:
         if event.distance > 0.0 and inside:
             at = float(np.interp(way, self._way[k - 1 : k + 1], self._t[k - 1 : k + 1]))
         return max(min(max(at, begin), max(end, begin)) - event.time, 0.0)
+
+
+def _zone_begins(run: Run) -> IntArray:
+    """(M,), the knot of the path at which the zone at the end of each segment begins."""
+    pieces = run.path.pieces
+    _, first = np.unique(pieces.source[:, 0], return_index=True)
+    # Where zones touch, their common edge is told as the end of the first.
+    shared = (pieces.source[first, 1] == WAYPOINT) & ~pieces.stop[first]
+    return np.asarray(pieces.first_interval[(first - shared)[1:]])
 
 
 def _in_a_line(text: str) -> str:

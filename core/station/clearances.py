@@ -144,10 +144,10 @@ class StationProver:
             actions: of each robot.
         """
         prover = self.prover(one, other)
-        times = [np.array([action.time for action in actions[name]]) for name in (one, other)]
+        sizes = len(actions[one]) + 1, len(actions[other]) + 1
         together = sections_mask(
-            orders.together(one, other, (len(times[0]) + 1, len(times[1]) + 1)),
-            (times[0], times[1]),
+            orders.together(one, other, sizes),
+            (actions[one], actions[other]),
             (lambda: prover.one.own_time, lambda: prover.other.own_time),
             (self._lag(one), self._lag(other)),
         )

@@ -138,7 +138,7 @@ class _Search:
 
     def _moved(self, name: str, k: int, time: float) -> dict[str, tuple[Action, ...]]:
         doings = self.actions[name]
-        moved = (*doings[:k], replace(doings[k], time=time), *doings[k + 1 :])
+        moved = (*doings[:k], replace(doings[k], time=time, earliest=None), *doings[k + 1 :])
         return {**self.actions, name: moved}
 
     def _clear(self, name: str, orders: Orders, actions: Actions) -> bool:

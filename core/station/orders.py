@@ -286,7 +286,7 @@ def _stepped(at: tuple[int, ...], which: Sequence[int]) -> tuple[int, ...]:
 
 def sections_mask(
     reachable: NDArray[np.bool_],
-    times: tuple[NDArray[np.float64], NDArray[np.float64]],
+    actions: tuple[Sequence[Action], Sequence[Action]],
     own: tuple[Callable[[], NDArray[np.float64]], Callable[[], NDArray[np.float64]]],
     lags: tuple[float, float],
 ) -> Together:
@@ -294,18 +294,25 @@ def sections_mask(
 
     Args:
         reachable: of sections, see `Orders.together`.
-        times: s, own times of the actions of each.
+        actions: of each, as they are reckoned with.
         own: (L, 2) s of the intervals of each, as they are when it is asked.
         lags: s by which each motion is behind its command.
     """
     sums = np.zeros((reachable.shape[0] + 1, reachable.shape[1] + 1), dtype=np.int64)
     sums[1:, 1:] = reachable.cumsum(axis=0).cumsum(axis=1)
 
+    latest = [np.array([action.time for action in doings]) for doings in actions]
+    earliest = [
+        # What comes behind is not done before; what is done before may be as late as it.
+        np.minimum.accumulate([action.soonest for action in doings][::-1])[::-1]
+        for doings in actions
+    ]
+
     def sections(k: int, rows: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         span = own[k]()[rows]
         # While it waits, a robot may still be coming to rest.
-        first = np.searchsorted(times[k], span[:, 0] - lags[k] - 1e-9, "left")
-        last = np.searchsorted(times[k], span[:, 1] + 1e-9, "right")
+        first = np.searchsorted(latest[k], span[:, 0] - lags[k] - 1e-9, "left")
+        last = np.searchsorted(earliest[k], span[:, 1] + 1e-9, "right")
         return first, last
 
     def together(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError, InputError, UnknownNameError
+from ...core.errors import FlybyError, InputError, Note, UnknownNameError
 from ..read import SourceOptions, read_with
 from ..setup import Setup, setup_of_program, start_of
 
@@ -17,20 +18,35 @@ if TYPE_CHECKING:
     from ...core.station.station_file import MemberFile, StationFile
 
 
-def open_station(
-    source: Path, say: Callable[[str], None]
-) -> tuple[RobotStation, dict[str, tuple[Action, ...]]]:
+@dataclass(frozen=True)
+class OpenedStation:
+    """A station with its programs as driven.
+
+    Args:
+        station: the robots.
+        actions: what their programs do with signals.
+        unknown: what is said of statements that set signals in ways that nobody knows.
+        notes: what else a user should know.
+    """
+
+    station: RobotStation
+    actions: dict[str, tuple[Action, ...]]
+    unknown: tuple[Note, ...]
+    notes: tuple[Note, ...]
+
+
+def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     """A station with its programs as driven, and what these do with signals.
 
     Raises:
         InputError, MotionError: as `station_with`.
     """
-    from ...core.station.actions import actions_of
+    from ...core.station.actions import actions_of, unknown_of
     from ...core.station.station import RobotStation
     from ...core.station.station_file import read_station_file
 
     file = read_station_file(source)
-    members, actions = {}, {}
+    members, actions, unknown = {}, {}, []
     for member in file.members:
         say(f"reading and driving {member.name}")
         made, setup = _member(member, file)
@@ -38,6 +54,14 @@ def open_station(
         speaks = setup.vendor.speaks
         words = None if speaks is None else speaks.signals
         actions[member.name] = actions_of(made.run, words)
+        for text, span in unknown_of(made.run, words, _looked_at(file, member.name)):
+            where = "" if span is None else f"{span}: "
+            unknown.append(
+                Note(
+                    f"{member.name}: {where}{text}: what this does to its signal is not known, and "
+                    "times are as if it did nothing; what the interlocks allow is not looked at"
+                )
+            )
     _check_signals(file, members, actions)
     _check_starts(file, members)
     station = RobotStation(
@@ -50,7 +74,31 @@ def open_station(
         file.allowed,
         file.file,
     )
-    return station, actions
+    notes = tuple(_coordinated(actions))
+    return OpenedStation(station, actions, tuple(unknown), notes)
+
+
+def _looked_at(file: StationFile, robot: str) -> set[str]:
+    """Outputs of a robot that wires and gates look at."""
+    named = [wire.source for wire in file.wires]
+    named += [one.name for gate in file.gates.values() for one in (*gate.inputs, *gate.resets)]
+    parted = [name.partition(".") for name in named]
+    return {rest.strip() for own, _, rest in parted if own.strip().casefold() == robot.casefold()}
+
+
+def _coordinated(actions: dict[str, tuple[Action, ...]]) -> Iterator[Note]:
+    """Moves that the controller times with those of other robots, which is not emulated."""
+    from ...core.program.signal import Meet
+
+    for name, doings in actions.items():
+        for action in doings:
+            if isinstance(action.does, Meet) and action.does.coordinated:
+                where = "" if action.span is None else f"{action.span}: "
+                yield Note(
+                    f"{name}: {where}the moves behind {action.text} are coordinated with other "
+                    "robots' by the controller; here each robot drives them at its own speed, so "
+                    "that times and clearances in time are not those of the cell there"
+                )
 
 
 def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]:

@@ -56,15 +56,16 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
         raise OptionError(
             f"{switched('interlocks')} rests on proofs, which {switched('no_proof')} leaves out"
         )
-    station, actions = open_station(Path(source), options.say)
+    opened = open_station(Path(source), options.say)
+    station, actions = opened.station, opened.actions
     options.say("running all programs on one clock")
     clock = StationClock(station, actions)
     run = clock.run()
     stuck = deadlock(station, run, actions, clock)
-    notes = [*run.notes]
+    notes = [*opened.notes, *opened.unknown, *run.notes]
     orders = None
     try:
-        orders = explore(station, actions)
+        orders = None if opened.unknown else explore(station, actions)
     except InputError as error:
         notes.append(Note(str(error)))
     clearances = []

@@ -10,6 +10,7 @@ import pytest
 
 import flyby
 from flyby.core.errors import FlybyError
+from flyby.core.station.clearances import StationProver
 from flyby.drawing.station import draw_station
 
 HOMES = ("[0,0,0,0,30,0]", "[20,0,0,0,30,0]", "[-20,0,0,0,30,0]")
@@ -310,3 +311,49 @@ def test_logic_that_swings_is_refused(write: Write) -> None:
     )
     with pytest.raises(FlybyError, match="never comes to rest"):
         station(file)
+
+
+def test_an_output_at_a_fly_by_point_may_come_where_the_zone_begins(write: Write) -> None:
+    by = f"MoveAbsJ [{HOMES[1]},{UNUSED}], v1000, z50, tool0"
+    made = station(
+        write(
+            {
+                "one": ["go 0", by, "SetDO doBy,1", "go 2", "SetDO doStop,1", "go 0"],
+                "two": ["go 0", "WaitDI diGo,1", "WaitDI diOn,1", "go 1"],
+            },
+            '[links]\n"one.doBy" = "two.diGo"\n"one.doStop" = "two.diOn"\n',
+        )
+    )
+    passing, stopped = made.actions["one"]
+    assert passing.soonest < passing.time - 0.01
+    assert stopped.soonest == stopped.time
+
+
+def test_statements_that_nobody_knows_are_no_interlock(write: Write) -> None:
+    programs = {
+        "one": ["go 0", "SetDO doBusy,1", "go 1", "SetDO\\SDelay:=0.2, doBusy,0", "go 0"],
+        "two": ["go 0", "WaitDI diBusy,0", "go 1", 'TPWrite "doBusy"'],
+    }
+    made = station(write(programs, '[links]\n"one.doBusy" = "two.diBusy"\n'))
+    assert made.orders is None
+    (note,) = [str(note) for note in made.notes if "not known" in str(note)]
+    assert "one.mod:9" in note and "SetDO\\SDelay" in note
+
+
+def test_coordinated_moves_are_noted(write: Write) -> None:
+    both = ["go 0", "SyncMoveOn s1, all", "go 1", "SyncMoveOff s2", "go 0"]
+    made = station(write({"one": both, "two": both}))
+    notes = [str(note) for note in made.notes if "at its own speed" in str(note)]
+    assert len(notes) == 2 and "SyncMoveOn s1" in notes[0]
+    assert made.deadlock is None
+
+
+def test_samples_that_seem_too_near_hide_nothing(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where a proof contradicts samples, everything behind them is looked at as well."""
+    away = f"MoveAbsJ [[90,0,0,0,30,0],{UNUSED}], v1000, fine, tool0"
+    programs = {"one": [away, "go 0"], "two": [away, "go 0"]}
+    monkeypatch.setattr(StationProver, "_sampled", lambda *_: (0.0, -1.0))
+    made = station(write(programs, gap=450.0), no_proof=False)
+    assert not made.clearances[0].in_time.proven

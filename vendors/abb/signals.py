@@ -82,7 +82,7 @@ def _action(
 
 
 _MEETING = re.compile(
-    r"\s*(?:WaitSyncTask|SyncMoveOn|SyncMoveOff)\b\s*(?:\\\w+(?:\s*:=\s*[^\\,;]+)?\s*,?\s*)*"
+    r"\s*(?P<word>WaitSyncTask|SyncMoveOn|SyncMoveOff)\b\s*(?:\\\w+(?:\s*:=\s*[^\\,;]+)?\s*,?\s*)*"
     r"(?P<label>[A-Za-z]\w*)\b.*",
     re.IGNORECASE | re.DOTALL,
 )
@@ -91,7 +91,9 @@ _MEETING = re.compile(
 def meets(text: str) -> Meet | None:
     """The meeting of MultiMove that an instruction is ("Application manual MultiMove")."""
     found = _MEETING.fullmatch(text)
-    return None if found is None else Meet(found["label"].casefold())
+    if found is None:
+        return None
+    return Meet(found["label"].casefold(), coordinated=found["word"].casefold() == "syncmoveon")
 
 
 def event(text: str) -> str:

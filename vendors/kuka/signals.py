@@ -53,7 +53,7 @@ def read(text: str) -> SignalAction | None:
 
 
 _MEETING = re.compile(
-    r"\s*SYNCCMD\s*\(\s*#(?:ProgSync|MotionSync)\s*,\s*\"(?P<label>[^\"]+)\"\s*,"
+    r"\s*SYNCCMD\s*\(\s*#(?P<kind>ProgSync|MotionSync)\s*,\s*\"(?P<label>[^\"]+)\"\s*,"
     r"\s*(?P<mask>\d+|'B[01]+'|'H[0-9A-F]+')\s*\)\s*",
     re.IGNORECASE,
 )
@@ -68,7 +68,8 @@ def meets(text: str) -> Meet | None:
     bases = {"B": 2, "H": 16}
     bits = int(mask[1:], bases[mask[0]]) if mask[0] in bases else int(mask)
     parties = tuple(k for k in range(bits.bit_length()) if bits >> k & 1)
-    return Meet(found["label"].casefold(), parties or None)
+    coordinated = found["kind"].casefold() == "motionsync"
+    return Meet(found["label"].casefold(), parties or None, coordinated)
 
 
 def said(action: SignalAction) -> str | None:
