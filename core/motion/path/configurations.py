@@ -58,6 +58,7 @@ class ConfigurationFinder:
         departures: index of each move that is driven with another configuration than programmed,
             and what there is to say.
         tolerated: the same for those whose configuration the controller takes all the same.
+        ambiguous: the same for those whose configuration does not tell postures of the arm apart.
         solved: indices of the axes that inverse kinematics solves for along moves of the TCP;
             six if the arm can follow them.
         prescribed: indices of the others: external axes, and the redundant one of seven.
@@ -68,6 +69,7 @@ class ConfigurationFinder:
         self._nearest = nearest
         self.departures: dict[int, str] = {}
         self.tolerated: dict[int, str] = {}
+        self.ambiguous: dict[int, str] = {}
         self._label = label
         redundant = [_REDUNDANT] if robot.arm_size == 7 else []
         arm = range(robot.arm_size)
@@ -242,6 +244,10 @@ class ConfigurationFinder:
         admitted = [name is not None and wanted.admits(name) for name in labels]
         misses = np.where(admitted, self._misses(wanted, options), math.inf)
         best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
+        alike = self._alike(wanted, labels, misses, options, best)
+        if alike and misses[best] > _MATCH:
+            # Only where one posture is near what is programmed it is clear which is meant.
+            admitted = [False] * len(options)
         if not any(admitted) and self._nearest:
             best = int(np.argmin(distance))
             self.departures[index] = f"contradicts the pose: driven to with {labels[best]}"
@@ -253,9 +259,28 @@ class ConfigurationFinder:
                 f"configuration {wanted} contradicts the pose; the robot reaches it with {known}",
                 FaultCause.CONFIGURATION,
             )
+        elif alike:
+            self.ambiguous[index] = f"{wanted} may mean {alike + 1} postures"
         elif misses[best] > _MATCH and not wanted.hint:
             self.tolerated[index] = f"{wanted} is driven to with {labels[best]}"
         return np.asarray(options[best])
+
+    @staticmethod
+    def _alike(
+        wanted: Configuration,
+        labels: Sequence[Configuration | None],
+        misses: FloatArray,
+        options: FloatArray,
+        best: int,
+    ) -> int:
+        """How many other postures a programmed configuration may mean just as well as the best, on
+        arms whose labels leave open which: if none matches, all that it admits."""
+        chosen = labels[best]
+        if wanted.hint or chosen is None or not chosen.hint:
+            return 0
+        others = np.abs(options - options[best]).max(axis=1) > _EDGE
+        within = np.isfinite(misses) if misses[best] > _MATCH else misses <= _MATCH
+        return int(np.count_nonzero(within & others))
 
     def _misses(self, wanted: Configuration, options: FloatArray) -> FloatArray:
         """Mismatches (K,) of configurations (K, N); infinite where the vendor has no label."""
@@ -315,13 +340,18 @@ class ConfigurationFinder:
             )
 
     def tolerance_notes(self) -> list[Note]:
-        """One note on configurations that are not quite those of their poses."""
-        if not self.tolerated:
-            return []
-        first, what = next(iter(self.tolerated.items()))
-        others = len(self.tolerated) - 1
-        more = f"; so it is with {counted(others, 'other move')}" if others else ""
-        return [Note(f"configuration {what}, the nearest that controllers take{more}", first)]
+        """Notes on configurations that are not quite those of their poses, or hold for several."""
+        found = []
+        for moves, end in (
+            (self.tolerated, ", the nearest that controllers take"),
+            (self.ambiguous, " of this arm: the nearest is taken, and may be another one there"),
+        ):
+            if moves:
+                first, what = next(iter(moves.items()))
+                others = len(moves) - 1
+                more = f"; so it is with {counted(others, 'other move')}" if others else ""
+                found.append(Note(f"configuration {what}{end}{more}", first))
+        return found
 
     def why_unreachable(self, move: Move, near: FloatArray) -> UnreachableError | None:
         """What keeps a move's target out of reach; None if nothing does."""

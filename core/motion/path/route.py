@@ -150,6 +150,7 @@ class RouteFinder:
         notes: list[Note] = []
         self._targets.departures.clear()
         self._targets.tolerated.clear()
+        self._targets.ambiguous.clear()
         q = self._start(program, start, notes)
         legs = _Legs(0 if notes else None)
         for stage in self._stages(moves, skipped):

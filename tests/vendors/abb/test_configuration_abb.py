@@ -5,8 +5,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.errors import InputError
-from flyby.core.program.target import Configuration
+from flyby.core.errors import InputError, MotionError
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.move import MoveJ
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import Configuration, JointTarget, PoseTarget
+from flyby.core.program.zone import FINE
 from flyby.core.registry import find_vendor
 from flyby.core.robot.model import Robot
 from flyby.testing.strategies import configurations
@@ -124,3 +129,24 @@ def test_a_neighbouring_quadrant_is_admitted_and_no_other_posture(
     admitted = [k for k in range(-6, 7) if AbbConfiguration(0, k, 0, 0).admits(found)]
     assert admitted == list(range(quarter - 1, quarter + 2))
     assert AbbConfiguration(0, quarter, 0, cfx).admits(found) is (cfx == 0)
+
+
+def test_arms_whose_cfx_nobody_knows_take_no_neighbouring_quadrant_at_random() -> None:
+    """Several postures of a CRB 15000 are within a quadrant of what is programmed."""
+    robot = ABB.robot("crb15000-5-095")
+    taught = np.array([1.43, -0.93, 0.46, -1.3, 1.09, 0.17])
+    pose = robot.flange_pose(taught)
+    own = label(robot, taught)
+    assert own is not None and own.undecided == 7
+    controller = Controller(ABB, robot)
+
+    def arrived(cf6: int) -> np.ndarray:
+        target = PoseTarget(pose, AbbConfiguration(own.cf1, own.cf4, cf6, 0))
+        move = MoveJ(target, Speed(joint_fraction=0.5), FINE)
+        run = controller.run(Program((move,), start=JointTarget((0.0,) * 6)), None, None)
+        assert not any("postures of this arm" in str(note) for note in run.notes)
+        return run.trajectory.q[-1]
+
+    assert arrived(own.cf6) == pytest.approx(taught, abs=1e-6)
+    with pytest.raises(MotionError, match="contradicts the pose"):
+        arrived(own.cf6 + 1)
