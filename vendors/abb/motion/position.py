@@ -11,7 +11,7 @@ from ....core.motion.path.present_position import PresentPosition
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Tool, WorkObject
-from ....core.robot.joint import JointKind
+from ....core.source.text.axis_values import axis_values
 from ....core.spatial.pose import Pose
 from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, Record, pose_record
 from .configuration import AbbConfiguration, label
@@ -21,27 +21,6 @@ if TYPE_CHECKING:
     from ....core.robot.model import Robot
 
 ARM_AXES = 6
-
-
-def axis_values(robot: Robot | None, q: Sequence[float] | FloatArray) -> list[float]:
-    """Values of the arm's axes as RAPID counts them, in degrees and mm, of those in rad and m."""
-    return [
-        1e3 * float(v) if slide else math.degrees(float(v))
-        for v, slide in zip(q, _slides(robot), strict=False)
-    ]
-
-
-def arm_values(robot: Robot | None, values: Sequence[float]) -> tuple[float, ...]:
-    """Reverse of `axis_values`."""
-    slides = zip(values, _slides(robot), strict=False)
-    return tuple(v / 1e3 if slide else math.radians(v) for v, slide in slides)
-
-
-def _slides(robot: Robot | None) -> list[bool]:
-    """Which of the arm's axes slide; none where the robot is not known."""
-    if robot is None:
-        return [False] * ARM_AXES
-    return [joint.kind is JointKind.PRISMATIC for joint in robot.joints]
 
 
 class Position(PresentPosition):

@@ -15,6 +15,7 @@ from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
 from ....core.source.execution.scopes import alike
 from ....core.source.execution.transcript import Notes
+from ....core.source.text.axis_values import arm_values
 from ....core.spatial.pose import Pose, Quaternion
 from ..syntax.tree import Expression, Name
 from ..values.evaluator import Evaluator
@@ -47,7 +48,6 @@ from ..values.types import (
     Value,
 )
 from .configuration import AbbConfiguration
-from .position import arm_values
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:

@@ -15,6 +15,7 @@ from ....core.motion.path.present_position import PresentPosition, last_seen_ali
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
+from ....core.source.text.axis_values import axis_values
 from ....core.spatial.pose import Pose
 from ..values.frames import frame_of
 from ..values.types import AXIS_FIELDS, EXTERNAL_FIELDS
@@ -26,27 +27,6 @@ if TYPE_CHECKING:
     from ....core.robot.model import Robot
 
 WHERE = "where the robot stands"
-
-
-def axis_values(robot: Robot | None, q: Sequence[float] | FloatArray) -> list[float]:
-    """Values of the arm's axes as KRL counts them, in degrees and mm, of those in rad and m."""
-    return [
-        1e3 * float(v) if slide else math.degrees(float(v))
-        for v, slide in zip(q, _slides(robot), strict=False)
-    ]
-
-
-def arm_values(robot: Robot | None, values: Sequence[float]) -> tuple[float, ...]:
-    """Reverse of `axis_values`."""
-    slides = zip(values, _slides(robot), strict=False)
-    return tuple(v / 1e3 if slide else math.radians(v) for v, slide in slides)
-
-
-def _slides(robot: Robot | None) -> list[bool]:
-    """Which of the arm's axes slide; none where the robot is not known."""
-    if robot is None:
-        return [False] * len(AXIS_FIELDS)
-    return [joint.kind is JointKind.PRISMATIC for joint in robot.joints]
 
 
 class Position:

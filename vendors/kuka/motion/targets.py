@@ -15,12 +15,13 @@ from ....core.errors import InputError, LeftOpenError, SourceError, Span
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
+from ....core.source.text.axis_values import arm_values
 from ..values.frames import pose_of
 from ..values.provenance import Sources
 from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS
 from ..values.values import Placement, Struct, Unknown, Value, find_unknown, left_open, shown
 from .configuration import KukaConfiguration
-from .position import Position, arm_values
+from .position import Position
 
 POSE_NUMBERS = (*FRAME_FIELDS, "s", "t", *EXTERNAL_FIELDS)
 """The numbers of a position, in the order of an origin's numbers."""

@@ -13,9 +13,9 @@ from ....core.program.target import Configuration, JointTarget, PoseTarget
 from ....core.program.tool import Load
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
+from ....core.source.text.axis_values import axis_values
 from ....core.spatial.pose import Pose, Vector3
 from ..motion.configuration import KukaConfiguration
-from ..motion.position import axis_values
 from ..values.angles import written_angles
 from .numbers import number
 
