@@ -9,11 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..arrays import FloatArray
-from ..errors import Note
+from ..errors import InputError, Note
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
 from .plc import Plc
 from .station import RobotStation, signal_key
+
+_SWINGS = 10_000
+"""Changes of signals, at one instant or while all robots wait, after which these swing for ever."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +143,13 @@ class _Robot:
     def current(self) -> Action:
         return self.actions[self.next]
 
+    @property
+    def rests(self) -> bool:
+        """Whether it has ended, or waits without a time-out."""
+        if self.next == len(self.actions):
+            return self.end < np.inf
+        return self.since is not None and getattr(self.current.does, "longest", None) is None
+
     def waits_at(self, meet: Meet) -> bool:
         """Whether it waits for others at a meeting of this name."""
         if self.since is None:
@@ -186,15 +196,22 @@ class StationClock:
         """From all robots' beginnings to where nothing happens any more.
 
         Raises:
-            InputError: the PLC's logic never comes to rest.
+            InputError: the PLC's logic, or links round it, never come to rest.
         """
         for robot in self._robots.values():
             self._send(robot, robot.due)
         self._settle(0.0)
-        while self._queue:
+        last, same, idle = 0.0, 0, 0
+        while self._queue and idle < _SWINGS:
             time, _, happen = heapq.heappop(self._queue)
+            same = same + 1 if time == last else 0
+            if same > _SWINGS:
+                raise InputError("links and logic never come to rest: they depend on themselves")
+            last = time
             happen(time)
             self._settle(time)
+            # Signals may go on and off for ever where nobody goes on any more.
+            idle = idle + 1 if all(robot.rests for robot in self._robots.values()) else 0
         return self._made()
 
     def _push(self, time: float, happen: Callable[[float], None]) -> None:

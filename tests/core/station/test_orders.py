@@ -6,6 +6,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.program.signal import Level, Meet, SetSignal, WaitSignal
@@ -138,3 +140,86 @@ def test_logic_that_never_rests_is_refused() -> None:
     made, actions = station({"a": [on("x")], "b": [wait("y")]}, gates=gates)
     with pytest.raises(InputError, match="rest"):
         explore(made, actions)
+
+
+class Watched(StationClock):
+    """A clock that notes how far all robots are whenever something has happened."""
+
+    seen: set[tuple[int, ...]]
+
+    def _settle(self, now: float) -> None:
+        super()._settle(now)
+        self.seen.add(tuple(robot.next for robot in self._robots.values()))
+
+
+INPUTS = st.builds(
+    Input, st.sampled_from(["a.x", "a.y", "b.x", "b.y", "plc.g", "plc.h", "b.i"]), st.booleans()
+)
+GATES = st.builds(
+    Gate,
+    st.sampled_from(GateKind),
+    st.lists(INPUTS, min_size=1, max_size=2).map(tuple),
+    st.lists(INPUTS, max_size=1).map(tuple),
+    st.integers(1, 3),
+    st.floats(0.0, 2.0),
+)
+WIRES = st.builds(
+    lambda source, target, delay: Wire(source, target, delay, delay),
+    st.sampled_from(["a.x", "a.y", "b.x", "plc.g", "plc.h"]),
+    st.sampled_from(["a.i", "a.j", "b.i", "b.j"]),
+    st.sampled_from([0.0, 0.3, 1.4, 5.0]),
+)
+DOINGS = st.one_of(
+    st.builds(
+        SetSignal,
+        st.sampled_from("xy"),
+        st.booleans(),
+        st.sampled_from([None, None, 0.2, 1.5, 4.0]),
+    ),
+    st.builds(
+        WaitSignal,
+        st.builds(Level, st.sampled_from("ij"), st.booleans()),
+        st.sampled_from([None, None, None, 2.0]),
+    ),
+    st.builds(Meet, st.sampled_from("mn")),
+    st.none(),
+)
+
+
+@settings(max_examples=120, deadline=None)
+@given(
+    st.fixed_dictionaries({name: st.lists(DOINGS, max_size=5) for name in "ab"}),
+    st.dictionaries(st.sampled_from("gh"), GATES, max_size=2),
+    st.lists(WIRES, max_size=4, unique_by=lambda wire: (wire.source, wire.target)),
+    st.frozensets(st.sampled_from(["a.x", "b.x", "a.i", "b.i"]), max_size=2),
+)
+def test_what_the_clock_comes_to_is_among_the_orders(
+    programs: dict[str, list[Any]],
+    gates: dict[str, Gate],
+    wires: list[Wire],
+    initial: frozenset[str],
+) -> None:
+    made, actions = station(programs, wires=tuple(wires), gates=gates, initial=initial)
+    clock = Watched(made, actions)
+    clock.seen = set()
+    try:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("flyby.core.station.orders._MOST_STATES", 1000)
+            orders = explore(made, actions)
+        clock.run()
+    except InputError:
+        return
+    assert clock.seen <= orders.reachable
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.1])
+def test_signals_that_blink_for_ever_do_not_hold_the_clock(delay: float) -> None:
+    gates = {"g": Gate(GateKind.AND, (Input("b.i", False),))}
+    wires = (Wire("plc.g", "b.i", delay, delay),)
+    made, actions = station({"a": [on("x")], "b": [wait("k")]}, gates=gates, wires=wires)
+    clock = StationClock(made, actions)
+    if delay > 0.0:
+        assert clock.run().duration == 3.0
+    else:
+        with pytest.raises(InputError, match="never come to rest"):
+            clock.run()
