@@ -189,6 +189,7 @@ class StationClock:
         self._driven = {signal_key(wire.target) for wire in station.wires} | self._set
         self._queue: list[tuple[float, int, Callable[[float], None]]] = []
         self._count = 0
+        self._looked_at: set[float] = set()
         self._changes: list[SignalChange] = []
         self._notes: dict[str, Note] = {}
 
@@ -307,7 +308,8 @@ class StationClock:
         for key, on in changes:
             self._changes.append(SignalChange(now, key, on))
             self._carry(key, on, now)
-        for due in later:
+        for due in set(later) - self._looked_at:
+            self._looked_at.add(due)
             self._push(due, lambda now: None)
         for robot in self._robots.values():
             if robot.since is None or robot.next == len(robot.actions):
