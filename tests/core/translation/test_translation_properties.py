@@ -77,7 +77,7 @@ def _check_corners(before, after, told) -> None:
 
 
 def _check_times(program, old, new, told) -> None:
-    now = dict(zip(new.path.route.moves, new.timing.segment_durations(), strict=True))
-    for move, seconds in zip(old.path.route.moves, old.timing.segment_durations(), strict=True):
+    now = dict(zip(new.path.route.moves, new.timing.settled_durations(), strict=True))
+    for move, seconds in zip(old.path.route.moves, old.timing.settled_durations(), strict=True):
         if isinstance(program.moves[move], MoveJ) and move not in told:
             assert abs(now[move] - seconds) < max(0.03, 0.08 * seconds)
