@@ -177,7 +177,7 @@ def _zone_begins(run: Run) -> IntArray:
     """(M,), the knot of the path at which the zone at the end of each segment begins."""
     pieces = run.path.pieces
     _, first = np.unique(pieces.source[:, 0], return_index=True)
-    # Where zones touch, their common edge is told as the end of the first.
+    # Where zones touch, their common edge counts as the end of the first.
     shared = (pieces.source[first, 1] == WAYPOINT) & ~pieces.stop[first]
     return np.asarray(pieces.first_interval[(first - shared)[1:]])
 

@@ -121,6 +121,7 @@ OTHER = MotionModel(
         (1e-4,),
         (Carried(4, (2e-4, 3e-4)),),
         (1e-3,),
+        True,
         (2e-3,),
         (2.0,),
         (0.5,),
