@@ -114,6 +114,7 @@ OTHER = MotionModel(
     blend_acceleration=1.25,
     ramp=0.0625,
     smoothing=(0.5, 0.25),
+    joint_smoothing=(0.25, 0.125),
     settling=0.375,
     in_position=0.25,
     in_position_time=0.0625,
