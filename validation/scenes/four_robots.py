@@ -101,9 +101,9 @@ def _program(name: str, base: Pose, stops: bool, locked: bool) -> Program:
         above = PoseTarget(at @ Pose((0.0, 0.0, -_ABOVE)))
         fast, slow = Speed(tcp=1.5), Speed(tcp=0.5)
         statements.append(MoveJ(above, fast, zone, ROD))
+        statements.append(MoveL(PoseTarget(at), slow, FINE, ROD))
         if locked and name in FIRST and k == over:
             statements.append(Opaque("SetDO doOut, 1;"))  # it has left the middle
-        statements.append(MoveL(PoseTarget(at), slow, FINE, ROD))
         statements.append(MoveL(above, slow, zone, ROD))
     statements.append(MoveJ(JointTarget(_HOME), Speed(tcp=1.5), FINE, ROD))
     return Program(tuple(statements), name=name, start=JointTarget(_HOME))
