@@ -84,13 +84,15 @@ class CatalogueChecks(Subject):
         label = self.vendor.label(robot, q)
         if label is None or label.hint or robot.recognised is None:
             return
-        external = q[robot.arm_size :]
+        arm, external = q[: robot.arm_size], q[robot.arm_size :]
+        # On the edge of a quadrant both sides fit, and so may two turns.
+        inside = np.abs(np.sin(2.0 * arm)) > SAME_JOINTS
         for solution in inverse(robot, q):
             for turned in robot.turns(solution):
                 other = self.vendor.label(robot, np.concatenate([turned, external]))
                 assert other is not None
                 if label.mismatch(other) == 0:
-                    assert np.abs(turned - q[: robot.arm_size]).max() < SAME_JOINTS
+                    assert np.abs(turned - arm)[inside].max(initial=0.0) < SAME_JOINTS
 
 
 def inverse(robot: Robot, q: FloatArray) -> list[FloatArray]:
