@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ..proof.boxes import Boxes
-from ..proof.sweep import Middle, measure_levers, place, travel
+from ..proof.sweep import measure_levers, middle_of, place, travel
 from ..scene.frames import FrameTree
 from ..scene.outline import Outlines
 
@@ -90,18 +90,8 @@ def sweep_intervals(
         present: (L, B), which bodies are there.
         found: written.
     """
-    frames, bodies = tree.parent.size, outlines.frame.size
-    at = Middle(
-        tree,
-        outlines,
-        np.empty((frames, 3, 3)),
-        np.empty((frames, 3)),
-        np.zeros((frames, 3)),
-        np.zeros((bodies, frames)),
-        np.empty((bodies, 3)),
-        np.empty((bodies, 3, 3)),
-    )
-    still = bodies - 1
+    at = middle_of(tree, outlines)
+    still = outlines.frame.size - 1
     for i in range(boxes.q.shape[0]):
         place(at, boxes.q[i])
         measure_levers(at, boxes.reach[i], most_off[i])

@@ -87,6 +87,22 @@ class Middle(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
+def middle_of(tree: FrameTree, outlines: Outlines) -> Middle:
+    """Room for bodies at the middle of one interval after the other."""
+    frames, bodies = tree.parent.size, outlines.frame.size
+    return Middle(
+        tree,
+        outlines,
+        np.empty((frames, 3, 3)),
+        np.empty((frames, 3)),
+        np.zeros((frames, 3)),
+        np.zeros((bodies, frames)),
+        np.empty((bodies, 3)),
+        np.empty((bodies, 3, 3)),
+    )
+
+
+@njit(cache=True, error_model="numpy")
 def sweep(
     tree: FrameTree,
     outlines: Outlines,
@@ -111,17 +127,7 @@ def sweep(
         items: the questions.
         found: written.
     """
-    frames, bodies = tree.parent.size, outlines.frame.size
-    at = Middle(
-        tree,
-        outlines,
-        np.empty((frames, 3, 3)),
-        np.empty((frames, 3)),
-        np.zeros((frames, 3)),
-        np.zeros((bodies, frames)),
-        np.empty((bodies, 3)),
-        np.empty((bodies, 3, 3)),
-    )
+    at = middle_of(tree, outlines)
     current = -1
     for k in range(items.interval.size):
         i = items.interval[k]
