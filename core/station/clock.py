@@ -13,7 +13,7 @@ from ..errors import InputError, Note
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
 from .plc import Plc
-from .station import RobotStation, signal_key
+from .station import RobotStation, levels_at_start, signal_key
 
 _SWINGS = 10_000
 """Changes of signals, at one instant or while all robots wait, after which these swing for ever."""
@@ -171,8 +171,8 @@ class StationClock:
         self, station: RobotStation, actions: Mapping[str, tuple[Action, ...]], late: float = 0.5
     ) -> None:
         self._station, self._late = station, late
-        self._levels = {signal_key(name): True for name in station.initial}
-        self._levels |= {signal_key(name): on for name, on in station.given.items()}
+        self._levels = {signal_key(name): on for name, on in station.given.items()}
+        self._levels |= dict.fromkeys(levels_at_start(station), True)
         self._plc = Plc(station.gates, self._levels)
         self._robots = {
             name: _Robot(

@@ -23,7 +23,7 @@ from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
 from .gates import Gate, GateKind, Input
 from .plc import PLC, ROUNDS
-from .station import RobotStation, signal_key
+from .station import RobotStation, levels_at_start, signal_key
 
 _MOST_STATES = 300_000
 _ON_THE_WAY = 8
@@ -111,11 +111,9 @@ class _Explorer:
 
     def all(self) -> Orders:
         """Breadth first."""
-        levels = {signal_key(name) for name in self._station.initial}
-        levels |= {signal_key(name) for name, on in self._station.given.items() if on}
         first = _State(
             (0,) * len(self._names),
-            frozenset(levels),
+            levels_at_start(self._station),
             (0,) * len(self._wires),
             (0,) * len(self._gates),
         )

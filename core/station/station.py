@@ -101,3 +101,18 @@ def signal_key(name: str) -> str:
         name: ``robot.signal``.
     """
     return "".join(name.split()).casefold()
+
+
+def levels_at_start(station: RobotStation) -> frozenset[str]:
+    """The keys of the signals that are on before anything has happened.
+
+    Inputs that a link leads to have had the time to follow outputs which are on; what is ``given``
+    stays what it is.
+    """
+    levels = {signal_key(name) for name in station.initial}
+    given = {signal_key(name): on for name, on in station.given.items()}
+    levels |= {name for name, on in given.items() if on}
+    links = [(signal_key(wire.source), signal_key(wire.target)) for wire in station.wires]
+    for _ in links:
+        levels |= {target for source, target in links if source in levels and target not in given}
+    return frozenset(levels)

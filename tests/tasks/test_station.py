@@ -38,8 +38,10 @@ def module(name: str, statements: Sequence[str]) -> str:
 def write(tmp_path: Path) -> Write:
     """Writes a station of robots far apart."""
 
-    def made(programs: dict[str, Sequence[str]], rest: str = "", gap: float = 9000.0) -> Path:
-        text = "clearance_mm = 10\n"
+    def made(
+        programs: dict[str, Sequence[str]], rest: str = "", gap: float = 9000.0, before: str = ""
+    ) -> Path:
+        text = f"clearance_mm = 10\n{before}"
         for k, (name, statements) in enumerate(programs.items()):
             turned = "[0, 0, 0, 1]" if k % 2 else "[1, 0, 0, 0]"
             base = f"{{ xyz_mm = [{k * gap}, 0, 0], quat_wxyz = {turned} }}"
@@ -185,6 +187,20 @@ def test_an_input_without_a_link_holds_nobody_up_and_is_noted(write: Write) -> N
     made = station(write({"one": ["go 0", "go 1"], "two": ["go 0", "WaitDI diOther,1", "go 1"]}))
     assert not made.waits()
     assert any("diOther: no link sets it" in str(note) for note in made.notes)
+
+
+def test_an_output_that_is_on_at_the_start_has_its_input_on(write: Write) -> None:
+    made = station(
+        write(
+            {
+                "one": ["go 0", "go 1", "SetDO doFree,0", "go 0"],
+                "two": ["WaitDI diFree,1", "go 0", "go 1"],
+            },
+            '[links]\n"one.doFree" = "two.diFree"\n',
+            before='initial = ["one.doFree"]\n',
+        )
+    )
+    assert made.deadlock is None and not made.waits()
 
 
 def test_counters_and_timers_of_the_plc(write: Write) -> None:

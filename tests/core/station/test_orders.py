@@ -63,10 +63,10 @@ def ends(made: RobotStation, actions: Doings) -> bool:
 
 
 def test_a_change_brings_what_the_source_is_then() -> None:
-    """The output was on, and the input off: going off, it does not switch the input on."""
+    """The output was on, and the input is off all the same: going off, it does not switch it on."""
     wires = (Wire("a.x", "b.y"),)
     programs = {"a": [off("x")], "b": [wait("y")]}
-    made, actions = station(programs, wires=wires, initial=frozenset({"a.x"}))
+    made, actions = station(programs, wires=wires, initial=frozenset({"a.x"}), given={"b.y": False})
     assert not ends(made, actions)
 
 

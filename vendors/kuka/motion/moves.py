@@ -320,7 +320,7 @@ class MotionReader:
         if open_ is not None:
             return value if isinstance(taken, Unknown) else taken
         self.transcript.notes.count(
-            f"{what} depends on {unknown.reason}, which the text does not say: what it was before, "
+            f"{what} depends on {unknown.reason}, which the text does not say: what is known of it, "
             f"or 0, is taken for it; {unknown.answerable}",
             span,
         )
