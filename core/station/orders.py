@@ -96,9 +96,6 @@ class _Explorer:
         self._actions = [tuple(actions[name]) for name in self._names]
         self._wires = [(signal_key(w.source), signal_key(w.target)) for w in station.wires]
         self._gates = list(station.gates.items())
-        self._timers = [
-            signal_key(f"{PLC}.{name}") for name, gate in self._gates if gate.kind is GateKind.TIMER
-        ]
         sets = {
             signal_key(f"{name}.{action.does.name}")
             for name, doings in zip(self._names, self._actions, strict=True)

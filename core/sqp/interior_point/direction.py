@@ -34,18 +34,15 @@ class Errors(NamedTuple):
     Args:
         dual: largest slope of the Lagrangian.
         primal: largest violation.
-        least, mean, largest: of the products of multiplier and distance.
+        least, largest: of the products of multiplier and distance.
         scale: of the products.
-        total: Σ of the slopes' sizes, of the violations and of the products, over their numbers.
     """
 
     dual: float
     primal: float
     least: float
-    mean: float
     largest: float
     scale: float
-    total: float
 
 
 @njit(cache=True, error_model="numpy")
@@ -128,28 +125,6 @@ def step_from(
 
 
 @njit(cache=True, error_model="numpy")
-def products_after(
-    at: InteriorIterate, step: InteriorIterate, box: InteriorLimits, primal: float, dual: float
-) -> tuple[float, float]:
-    """Mean product of multiplier and distance at a point, and after shares of a step."""
-    before, later, count = 0.0, 0.0, 0
-    for k in range(len(at.v)):
-        if box.held[k]:
-            continue
-        if np.isfinite(box.lower[k]):
-            gap = at.v[k] - box.lower[k]
-            before += gap * at.low[k]
-            later += (gap + primal * step.v[k]) * (at.low[k] + dual * step.low[k])
-            count += 1
-        if np.isfinite(box.upper[k]):
-            gap = box.upper[k] - at.v[k]
-            before += gap * at.high[k]
-            later += (gap - primal * step.v[k]) * (at.high[k] + dual * step.high[k])
-            count += 1
-    return before / max(count, 1), later / max(count, 1)
-
-
-@njit(cache=True, error_model="numpy")
 def errors_at(
     at: InteriorIterate, box: InteriorLimits, slopes: FloatArray, rest: FloatArray
 ) -> Errors:
@@ -159,33 +134,26 @@ def errors_at(
         slopes: (n + m,) of the Lagrangian.
         rest: (m,) c − s.
     """
-    dual, primal, total = 0.0, 0.0, 0.0
-    least, mean, largest = np.inf, 0.0, 0.0
+    dual, primal = 0.0, 0.0
+    least, largest = np.inf, 0.0
     sizes, count = 0.0, 0
     for i in range(len(rest)):
         primal = max(primal, abs(rest[i]))
-        total += rest[i] ** 2
         sizes += abs(at.y[i])
-    total = np.sqrt(total / max(1, len(rest)))
-    slope_total = 0.0
     for k in range(len(slopes)):
         if box.held[k]:
             continue
         slope = slopes[k] - at.low[k] + at.high[k]
         dual = max(dual, abs(slope))
-        slope_total += slope**2
         for side in range(2):
             limit = box.lower[k] if side == 0 else box.upper[k]
             if np.isfinite(limit):
                 pressing = at.low[k] if side == 0 else at.high[k]
                 product = abs(at.v[k] - limit) * pressing
                 least, largest = min(least, product), max(largest, product)
-                mean += product
                 sizes += pressing
                 count += 1
-    mean /= max(1, count)
     if count == 0:
         least = 0.0
     scale = max(_LARGE, sizes / max(1, count + len(rest))) / _LARGE
-    total += np.sqrt(slope_total / max(1, len(slopes))) + mean
-    return Errors(dual / scale, primal, least, mean, largest, scale, total)
+    return Errors(dual / scale, primal, least, largest, scale)

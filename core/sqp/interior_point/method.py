@@ -18,7 +18,7 @@ from ..filter import Filter
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from .barrier import Barrier
-from .direction import Errors, errors_at, lagrangian_slopes, products_after
+from .direction import Errors, errors_at, lagrangian_slopes
 from .functions import Functions
 from .iterate import InteriorIterate, InteriorLimits, advance, keep_near, longest, push_inside
 from .line_search import LineSearch, Taken
@@ -161,8 +161,6 @@ class InteriorPoint:
         place, barrier = self.place, self.barrier
         try:
             self.newton.factorise(place, self.hessian_here(), barrier.mu)
-            if barrier.free:
-                self._choose()
             step, slope = self.newton.step(barrier.mu)
             return self.search.along(place, step, slope, barrier.mu)
         except SingularError:
@@ -178,13 +176,6 @@ class InteriorPoint:
             self.hessian = self.functions.hessian(self.place.point, self.place.at.y)
             self._of = self.place
         return self.hessian
-
-    def _choose(self) -> None:
-        """μ from the step for none."""
-        at, box = self.place.at, self.box
-        step, _ = self.newton.step(0.0)
-        primal, dual = longest(at, step, box, 1.0)
-        self.barrier.choose(*products_after(at, step, box, primal, dual))
 
     def _advance(self, taken: Taken) -> None:
         place, mu = self.place, self.barrier.mu

@@ -12,7 +12,7 @@ from ..algebra.matrices import SparseMatrix, identity
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from ..problem.scaled import ScaledProblem
-from .barrier import Barrier, BarrierKind
+from .barrier import Barrier
 from .elastic import ElasticFunctions
 from .functions import ConstraintHessian
 from .method import InteriorPoint
@@ -62,7 +62,7 @@ def restored(
             return True
         return False
 
-    barrier = Barrier(BarrierKind.MONOTONE, _LEAST_MU, first_mu)
+    barrier = Barrier(_LEAST_MU, first_mu)
     inner = InteriorPoint(elastic, patterns, outer.tolerance, barrier, seen)
     try:
         inner.start(elastic.begin(place.point, place.at.v[n:], first_mu), first_theta)

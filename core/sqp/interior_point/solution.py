@@ -10,7 +10,7 @@ from ..problem.hessians import HessianSource
 from ..problem.scaled import ScaledProblem
 from ..progress import SolutionProgress
 from ..workspace import Workspace
-from .barrier import Barrier, BarrierKind
+from .barrier import Barrier
 from .functions import UserFunctions
 from .last_digits import LastDigits
 from .method import InteriorEnding, InteriorPoint
@@ -75,7 +75,7 @@ class InteriorSolution:
             UserFunctions(self._problem, self._hessian),
             self._patterns,
             0.1 * tolerance,
-            Barrier(BarrierKind.MONOTONE, _LEAST_MU * tolerance),
+            Barrier(_LEAST_MU * tolerance),
             self._seen,
         )
         try:
