@@ -18,7 +18,14 @@ from ...core.robot.joint import ExternalRole, Joint, JointKind
 from ...core.robot.model import Robot
 from ...core.robot.shape import Capsule, pose_along
 from ...core.spatial.pose import IDENTITY, Pose
-from .content import PageArm, PageAxis, PageBody, PageFrame, PageNode, PageRole
+from .arm_content import (
+    PageArm,
+    PageAxis,
+    PageBody,
+    PageFrame,
+    PageNode,
+    PageRole,
+)
 from .shapes import page_shape
 
 _STICK = 0.02

@@ -13,7 +13,9 @@ from ...core.motion.timing.energy import by_load, loads_of
 from ...core.motion.timing.torque import shares_taken
 from ...core.robot.model import Robot
 from ..geometry import tcp_speed
-from .content import PageChart
+from .track_content import (
+    PageChart,
+)
 
 SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH = (
     "speed",

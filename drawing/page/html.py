@@ -13,7 +13,9 @@ from functools import cache
 from importlib import resources
 
 from ...core.display import shown
-from .content import Page
+from .content import (
+    Page,
+)
 from .packing import Packer
 
 _TEMPLATE = """<!doctype html>

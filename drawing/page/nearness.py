@@ -6,8 +6,10 @@ import numpy as np
 
 from ...core.collision.clearance import ClearanceMeter
 from ...core.motion.command.trajectory import Trajectory
-from .content import PageClearance
 from .packing import Quantised, whole
+from .track_content import (
+    PageClearance,
+)
 
 MOST = 600
 """Samples that are looked at: a page shows the course of it, and is no proof."""

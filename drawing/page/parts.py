@@ -10,9 +10,17 @@ from ...core.cell.cell import Cell
 from ...core.handling.arrangement import PlacedPart
 from ...core.handling.handling import Handling
 from ...core.robot.model import Robot
+from .arm_content import (
+    PageArm,
+    PageBody,
+    PageRole,
+)
 from .arms import Nodes
-from .content import PageArm, PageBody, PagePart, PagePlace, PageRole
 from .shapes import page_shape
+from .track_content import (
+    PagePart,
+    PagePlace,
+)
 
 
 def with_parts(

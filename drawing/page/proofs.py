@@ -8,7 +8,9 @@ from ...core.collision.scene.scene import CollisionScene
 from ...core.errors import FlybyError
 from ...core.handling.arrangement import Arrangement
 from ...core.program.program import Program
-from .content import PageProof
+from .track_content import (
+    PageProof,
+)
 
 Point = tuple[float, float, float]
 

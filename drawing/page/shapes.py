@@ -8,7 +8,10 @@ from ...core.arrays import FloatArray, IntArray
 from ...core.cell.geometry import Mesh
 from ...core.robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..thinning import clustered
-from .content import PageMesh, PageSolid
+from .arm_content import (
+    PageMesh,
+    PageSolid,
+)
 from .packing import Quantised, whole
 
 MOST = 30_000

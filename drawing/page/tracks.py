@@ -18,16 +18,16 @@ from ...core.program.tool import Tool, WorkObject
 from ...core.robot.kinematics.chain_kernels import poses
 from ...core.robot.model import Robot
 from .arms import Nodes
-from .content import (
+from .curves import Curve, curves_of
+from .knots import DrawnCurves, knots
+from .packing import Quantised, whole
+from .track_content import (
     PageChannel,
     PageLimits,
     PageLine,
     PageMotion,
     PageWaypoints,
 )
-from .curves import Curve, curves_of
-from .knots import DrawnCurves, knots
-from .packing import Quantised, whole
 
 ERROR = 4e-5
 """m by which a body may be elsewhere on the page, beside rounding."""

@@ -10,14 +10,16 @@ from ...core.driving.driven_program import DrivenProgram
 from ...core.motion.command.trajectory import Trajectory
 from ...drawing.page.content import (
     Page,
-    PageChart,
     PageColumn,
     PageRow,
     PageTable,
-    PageTrack,
 )
 from ...drawing.page.curves import CHARTS, Curve
 from ...drawing.page.packing import Quantised
+from ...drawing.page.track_content import (
+    PageChart,
+    PageTrack,
+)
 from ...drawing.page.tracks import page_motion
 from ..results.comparison import COLUMNS, Comparison
 from ..results.runs import Run

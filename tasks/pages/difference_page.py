@@ -6,7 +6,12 @@ from collections.abc import Iterator
 from math import degrees
 from typing import TYPE_CHECKING
 
-from ...drawing.page.content import Page, PageColumn, PageRow, PageTable
+from ...drawing.page.content import (
+    Page,
+    PageColumn,
+    PageRow,
+    PageTable,
+)
 from ...drawing.page.curves import CHARTS
 from ..diff.comparing import StateDifference
 from .program_tables import moves_table

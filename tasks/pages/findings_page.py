@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError
 from ...core.lint.finding import Severity
-from ...drawing.page.content import Page, PageColumn, PageRow, PageTable
+from ...drawing.page.content import (
+    Page,
+    PageColumn,
+    PageRow,
+    PageTable,
+)
 from ..emulate import EmulateOptions, emulate_with
 from ..results.findings import Findings
 from .run_page import made_by, run_page

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from ...core.errors import FlybyError
-from ...drawing.page.content import Page, PageColumn, PageFront, PagePoint, PageRow, PageTable
+from ...drawing.page.content import (
+    Page,
+    PageColumn,
+    PageFront,
+    PagePoint,
+    PageRow,
+    PageTable,
+)
 from ...drawing.page.curves import CHARTS
 from ..emulate import EmulateOptions, emulate_with
 from ..results.fronts import ProgramFront

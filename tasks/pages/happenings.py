@@ -11,7 +11,9 @@ from ...core.motion.command.trajectory import Trajectory
 from ...core.program.event import Event, EventAnchor
 from ...core.program.move import Opaque, Wait
 from ...core.program.program import Program
-from ...drawing.page.content import PageFlag
+from ...drawing.page.track_content import (
+    PageFlag,
+)
 from ..results.report import MoveReport, Report
 from .sources import SourceList
 

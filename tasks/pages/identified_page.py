@@ -7,7 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.driving.driven_program import DrivenProgram
-from ...drawing.page.content import Page, PageColumn, PageRow, PageSource, PageTable
+from ...drawing.page.content import (
+    Page,
+    PageColumn,
+    PageRow,
+    PageSource,
+    PageTable,
+)
 from ...identification.fit import Outcome
 from ...identification.report.corners import cut_corners
 from ...identification.residuals import Figures

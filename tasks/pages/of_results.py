@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 from ...core.errors import InputError
 
 if TYPE_CHECKING:
-    from ...drawing.page.content import Page
+    from ...drawing.page.content import (
+        Page,
+    )
 
 BUILDERS = {
     "Comparison": "comparison_page",

@@ -14,24 +14,28 @@ from ...core.motion.command.trajectory import Trajectory
 from ...core.robot.joint import Joint, JointKind
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
+from ...drawing.page.arm_content import (
+    PageArm,
+    PageBody,
+    PageRole,
+    PageSolid,
+)
 from ...drawing.page.arms import page_arm
 from ...drawing.page.content import (
     Page,
-    PageArm,
-    PageBody,
     PageCoat,
     PageColumn,
-    PageRole,
     PageRow,
     PageShare,
-    PageSolid,
     PageSource,
     PageTable,
-    PageTrack,
 )
 from ...drawing.page.curves import CHARTS, SPEED, Curve
 from ...drawing.page.packing import Quantised
 from ...drawing.page.shapes import page_mesh
+from ...drawing.page.track_content import (
+    PageTrack,
+)
 from ...drawing.page.tracks import page_motion
 from ..results.painted import COLUMNS, MICRON, TOLERANCE, PaintedPart
 from ..results.runs import Run

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError, Note
 from ...core.program.program import Program
-from ...drawing.page.content import PageCell, PageColumn, PageMove, PageRow, PageShare, PageTable
+from ...drawing.page.content import (
+    PageCell,
+    PageColumn,
+    PageRow,
+    PageShare,
+    PageTable,
+)
+from ...drawing.page.track_content import (
+    PageMove,
+)
 from ..results.report import MoveReport, Report, target_text, zone_text
 from ..results.shares import shares
 from .sources import SourceList

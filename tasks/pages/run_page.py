@@ -10,17 +10,21 @@ from typing import TYPE_CHECKING
 from ...core.display import counted
 from ...core.errors import FlybyError, Span
 from ...core.program.tool import Tool, WorkObject
+from ...drawing.page.arm_content import (
+    PageArm,
+)
 from ...drawing.page.arms import Nodes, page_arm
 from ...drawing.page.content import (
     Page,
-    PageArm,
-    PageClearance,
     PageSource,
-    PageTrack,
 )
 from ...drawing.page.curves import CHARTS
 from ...drawing.page.nearness import page_clearance
 from ...drawing.page.parts import with_parts
+from ...drawing.page.track_content import (
+    PageClearance,
+    PageTrack,
+)
 from ...drawing.page.tracks import (
     driven_curves,
     frame_node,

@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 
 from ...core.program.move import Move
 from ...core.program.zone import Radius, Zone, zone_shown
-from ...drawing.page.content import Page, PageCell, PageColumn, PageRow, PageTable
+from ...drawing.page.content import (
+    Page,
+    PageCell,
+    PageColumn,
+    PageRow,
+    PageTable,
+)
 from ...drawing.page.curves import CHARTS
 from ...problems.improve.solution import Solution
 from ..emulate import EmulateOptions, emulate_with

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 from ...core.errors import Span
 from ...core.program.program import Program
 from ...core.source.reading import Reading
-from ...drawing.page.content import PageSource
+from ...drawing.page.content import (
+    PageSource,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError
 from ...core.translation.translate import Translation
-from ...drawing.page.content import Page, PageColumn, PageRow, PageTable
+from ...drawing.page.content import (
+    Page,
+    PageColumn,
+    PageRow,
+    PageTable,
+)
 from ...drawing.page.curves import CHARTS
 from ..emulate import EmulateOptions, emulate_with
 from ..files.texts import read_again

@@ -12,7 +12,11 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from flyby.core.errors import InputError
-from flyby.drawing.page.content import Page, PageRow, PageTable
+from flyby.drawing.page.content import (
+    Page,
+    PageRow,
+    PageTable,
+)
 from flyby.drawing.page.html import page_html
 from flyby.drawing.page.packing import Packer, Quantised, whole
 

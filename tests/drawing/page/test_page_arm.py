@@ -22,8 +22,10 @@ from flyby.core.robot.joint import ExternalAxis, ExternalRole, Follower, Joint, 
 from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
+from flyby.drawing.page.arm_content import (
+    PageRole,
+)
 from flyby.drawing.page.arms import Nodes, page_arm
-from flyby.drawing.page.content import PageRole
 from flyby.drawing.page.tracks import page_lines, page_waypoints
 
 ARM = find_robot("abb/irb6640-180-255")

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.drawing.page.content import Page
+from flyby.drawing.page.content import (
+    Page,
+)
 from flyby.identification.fit import ParameterSet, fit, motion_file, outcomes
 from flyby.identification.logs import clean
 from flyby.identification.logs.synthetic import Faults

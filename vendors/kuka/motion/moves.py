@@ -320,8 +320,8 @@ class MotionReader:
         if open_ is not None:
             return value if isinstance(taken, Unknown) else taken
         self.transcript.notes.count(
-            f"{what} depends on {unknown.reason}, which the text does not say: what is known of it, "
-            f"or 0, is taken for it; {unknown.answerable}",
+            f"{what} depends on {unknown.reason}, which the text does not say: what is known "
+            f"of it, or 0, is taken; {unknown.answerable}",
             span,
         )
         return unplaced(taken)
