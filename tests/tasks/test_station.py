@@ -373,3 +373,33 @@ def test_samples_that_seem_too_near_hide_nothing(
     monkeypatch.setattr(StationProver, "_sampled", lambda *_: (0.0, -1.0))
     made = station(write(programs, gap=450.0), no_proof=False)
     assert not made.clearances[0].in_time.proven
+
+
+def test_a_kuka_and_a_ur_join_hands(tmp_path: Path) -> None:
+    axes = "A2 -90,A3 90,A4 0,A5 45,A6 0"
+    (tmp_path / "k.src").write_text(
+        f"DEF k( )\nPTP {{A1 0,{axes}}}\nPTP {{A1 40,{axes}}}\n$OUT[3]=TRUE\n"
+        f"WAIT FOR $IN[5]\nPTP {{A1 0,{axes}}}\nEND\n"
+    )
+    (tmp_path / "u.script").write_text(
+        "def u():\n  movej([0,-1.2,1.6,-1.9,-1.57,0])\n"
+        "  while (get_digital_in(0) == False):\n    sync()\n  end\n"
+        "  movej([0.8,-1.2,1.6,-1.9,-1.57,0])\n  set_digital_out(2, True)\n"
+        "  movej([0,-1.2,1.6,-1.9,-1.57,0])\nend\n"
+    )
+    (tmp_path / "kuka.toml").write_text('robot = "kuka/kr30-3"\n')
+    (tmp_path / "ur.toml").write_text('robot = "ur/ur5e"\nbase = { xyz_mm = [1500, 900, 0] }\n')
+    file = tmp_path / "station.toml"
+    file.write_text(
+        'clearance_mm = 20\n[robot.kuka]\ncell = "kuka.toml"\nprogram = "k.src"\n'
+        '[robot.ur]\ncell = "ur.toml"\nprogram = "u.script"\n'
+        '[links]\n"kuka.$OUT[3]" = { to = "ur.digital_in[0]", delay_ms = 30 }\n'
+        '"ur.digital_out[2]" = "kuka.$IN[5]"\n'
+    )
+    made = station(file, no_proof=False)
+    (first, asked), (second, given) = made.waits()
+    assert (first, second) == ("ur", "kuka")
+    (out,) = (a for a in made.actions["kuka"] if a.text.startswith("$OUT"))
+    assert asked.end == pytest.approx(out.time + 0.030)
+    assert given.end > asked.end and made.deadlock is None
+    assert made.clear and made.clearances[0].any_time.proven
