@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..program.signal import SetSignal, WaitSignal, levels
+from ..program.signal import SetSignal, WaitSignal
 from .actions import Action
+from .awaited import Actions, awaited
 from .clearances import PairClearance, StationProver
 from .clock import StationClock
 from .orders import Orders, explore
@@ -17,7 +18,6 @@ from .station import RobotStation, signal_key
 _HALVINGS = 8
 _LEAST = 1e-3
 """s that a change of an interlock saves at least to be named."""
-Actions = Mapping[str, Sequence[Action]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,12 +91,12 @@ class _Search:
 
     def outputs(self, orders: Orders) -> Iterator[Saving]:
         """Outputs that others wait for, and that could be set earlier."""
-        awaited = self._awaited()
+        wanted = awaited(self.station, self.actions)
         for name, doings in self.actions.items():
             for k, action in enumerate(doings):
                 if not isinstance(action.does, SetSignal):
                     continue
-                if signal_key(f"{name}.{action.does.name}") not in awaited:
+                if signal_key(f"{name}.{action.does.name}") not in wanted:
                     continue
                 begin = doings[k - 1].time if k else 0.0
                 if self._quicker(self._moved(name, k, begin)) <= _LEAST:
@@ -106,24 +106,6 @@ class _Search:
                     seconds = self._quicker(self._moved(name, k, time))
                     place = self._way(name, time, action.time)
                     yield Saving(name, action, action.time - time, place, seconds)
-
-    def _awaited(self) -> set[str]:
-        """Signals from which wires lead to one that is waited for, gates between included."""
-        wanted = {
-            signal_key(f"{name}.{level.name}")
-            for name, doings in self.actions.items()
-            for action in doings
-            if isinstance(action.does, WaitSignal)
-            for level in levels(action.does.condition)
-        }
-        for _ in range(len(self.station.wires) + len(self.station.gates)):
-            wanted |= {
-                signal_key(w.source) for w in self.station.wires if signal_key(w.target) in wanted
-            }
-            for name, gate in self.station.gates.items():
-                if signal_key(f"plc.{name}") in wanted:
-                    wanted |= {signal_key(one.name) for one in (*gate.inputs, *gate.resets)}
-        return wanted
 
     def _earliest(self, name: str, k: int, begin: float, orders: Orders) -> float:
         """The earliest own time, s, found by halving what is not proven."""

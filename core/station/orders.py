@@ -53,13 +53,13 @@ class Orders:
     """What may be at once.
 
     Args:
-        names: of the robots.
-        reachable: how far all of them may be at one time.
+        actions: of each robot, as they were looked at.
+        reachable: how far all robots may be at one time, in the order of ``actions``.
         stuck: states in which some robots wait for ever: how far each is.
         states: how many were looked at.
     """
 
-    names: tuple[str, ...]
+    actions: Mapping[str, tuple[Action, ...]]
     reachable: frozenset[tuple[int, ...]]
     stuck: tuple[tuple[int, ...], ...]
     states: int
@@ -69,7 +69,8 @@ class Orders:
 
         Section k of a robot lies between its actions k − 1 and k.
         """
-        a, b = self.names.index(one), self.names.index(other)
+        names = list(self.actions)
+        a, b = names.index(one), names.index(other)
         found = np.zeros(sizes, dtype=bool)
         for at in self.reachable:
             found[at[a], at[b]] = True
@@ -134,7 +135,8 @@ class _Explorer:
             ends = tuple(map(len, self._actions))
             if not moved and state.at != ends and state.at not in stuck:
                 stuck.append(state.at)
-        return Orders(self._names, frozenset(s.at for s in seen), tuple(stuck), len(seen))
+        actions = dict(zip(self._names, self._actions, strict=True))
+        return Orders(actions, frozenset(s.at for s in seen), tuple(stuck), len(seen))
 
     def _successors(self, state: _State) -> Iterator[_State]:
         for k, pending in enumerate(state.pending):

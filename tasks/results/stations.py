@@ -224,8 +224,7 @@ class DrivenStation:
         assert self.orders is not None
         at = self.orders.stuck[0]
         told = []
-        for name, k in zip(self.orders.names, at, strict=True):
-            actions = self.actions[name]
+        for (name, actions), k in zip(self.orders.actions.items(), at, strict=True):
             if k < len(actions):
                 told.append(f"{name} at {actions[k].text} ({_place(actions[k].span)})")
             else:

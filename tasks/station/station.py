@@ -45,6 +45,7 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
         InputError: a file cannot be read, or joins signals that are not there.
         MotionError: a move of a program cannot be driven.
     """
+    from ...core.station.awaited import bearing
     from ...core.station.clearances import StationProver
     from ...core.station.clock import StationClock
     from ...core.station.deadlock import deadlock
@@ -63,20 +64,20 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
     run = clock.run()
     stuck = deadlock(station, run, actions, clock)
     notes = [*opened.notes, *opened.unknown, *run.notes]
-    orders = None
+    orders, ordered = None, bearing(station, actions)
     try:
-        orders = None if opened.unknown else explore(station, actions)
+        orders = None if opened.unknown else explore(station, ordered)
     except InputError as error:
         notes.append(Note(str(error)))
     clearances = []
     if not options.no_proof:
         options.say("sweeping motions")
-        prover = StationProver(station, actions)
+        prover = StationProver(station, ordered)
         clearances = prover.all(run, options.jitter, orders, options.say)
     found: list[Saving] = []
     if options.interlocks and orders is not None and clearances:
         options.say("looking for interlocks that hold robots up needlessly")
-        found = savings(station, actions, prover, clearances, orders)
+        found = savings(station, ordered, prover, clearances, orders)
     return DrivenStation(
         station,
         actions,

@@ -274,6 +274,18 @@ def test_a_release_that_comes_late_is_found_with_what_it_costs() -> None:
     assert made.as_json()["interlocks"][0]["saved_s"] == pytest.approx(saving.seconds)
 
 
+def test_four_robots_weld_studs_proven_and_quicker_than_with_stops(tmp_path: Path) -> None:
+    example = Path("examples/stud_station")
+    made = flyby.station(example / "station.toml")
+    assert made.clear and not made.may_lock and all(pair.safe for pair in made.clearances)
+    shared = [pair.robots for pair in made.clearances if not pair.any_time.proven]
+    assert shared == [("a", "b"), ("c", "d")]
+    for file in example.iterdir():
+        (tmp_path / file.name).write_text(file.read_text().replace("z20", "fine"))
+    stops = station(tmp_path / "station.toml").duration
+    assert made.duration < 0.85 * stops
+
+
 def test_a_wait_that_protects_nothing_can_go(write: Write) -> None:
     made = station(
         write(

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.program.signal import Level, Meet, SetSignal, WaitSignal
 from flyby.core.station.actions import Action
+from flyby.core.station.awaited import bearing
 from flyby.core.station.clock import StationClock
 from flyby.core.station.gates import Gate, GateKind, Input
 from flyby.core.station.orders import explore
@@ -210,6 +211,44 @@ def test_what_the_clock_comes_to_is_among_the_orders(
     except InputError:
         return
     assert clock.seen <= orders.reachable
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.fixed_dictionaries({name: st.lists(DOINGS, max_size=5) for name in "ab"}),
+    st.dictionaries(st.sampled_from("gh"), GATES, max_size=2),
+    st.lists(WIRES, max_size=4, unique_by=lambda wire: (wire.source, wire.target)),
+)
+def test_what_bears_on_nothing_changes_no_order(
+    programs: dict[str, list[Any]], gates: dict[str, Gate], wires: list[Wire]
+) -> None:
+    """All orders, with the actions that count alone, are those of the actions that count."""
+    made, actions = station(programs, wires=tuple(wires), gates=gates)
+    count = bearing(made, actions)
+    try:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("flyby.core.station.orders._MOST_STATES", 2000)
+            every, fewer = explore(made, actions), explore(made, count)
+    except InputError:
+        return
+    passed = {
+        tuple(
+            sum(action in count[name] for action in actions[name][:at])
+            for name, at in zip(actions, state, strict=True)
+        )
+        for state in every.reachable
+    }
+    assert passed == fewer.reachable
+    assert bool(every.stuck) == bool(fewer.stuck)
+
+
+def test_welding_guns_and_unlinked_inputs_bear_on_nothing() -> None:
+    programs = {"a": [on("weld"), off("weld"), on("x"), wait("other")], "b": [wait("y")]}
+    made, actions = station(programs, wires=(Wire("a.x", "b.y"),))
+    assert [[a.text for a in doings] for doings in bearing(made, actions).values()] == [
+        [str(on("x"))],
+        [str(wait("y"))],
+    ]
 
 
 @pytest.mark.parametrize("delay", [0.0, 0.1])
