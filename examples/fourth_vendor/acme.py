@@ -79,9 +79,8 @@ HERE = Path(__file__).parent
 
 def motion() -> MotionModel:
     """Parabolas as everywhere; neighbouring blends shrink until they touch."""
-    model = MotionModel(period=0.008, overlap=Overlap.SHRINK)
     made_up = Provenance("assumed", "made up for this example")
-    return replace(model, provenance=dict.fromkeys(model.figures, made_up))
+    return MotionModel(period=0.008, overlap=Overlap.SHRINK, provenance={"*": made_up})
 
 
 class Acme:

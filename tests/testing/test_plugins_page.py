@@ -58,7 +58,7 @@ def test_the_page_is_a_plugin(page: ModuleType, monkeypatch: pytest.MonkeyPatch)
 def test_the_provenance_of_the_page_is_read() -> None:
     data = next(data for data in map(tomllib.loads, blocks("toml")) if "fits" in data)
     found = read_provenance(data["fits"], data["provenance"])
-    assert [origin.status for origin in found.values()] == ["published", "fitted"]
+    assert [origin.status for origin in found.values()] == ["assumed", "published", "fitted"]
 
 
 def test_the_suite_of_the_page_is_the_suite(page: ModuleType) -> None:

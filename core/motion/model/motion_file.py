@@ -12,7 +12,7 @@ from ...files.reading import read_toml
 from ...files.toml_text import key_text, value_text
 from .figures import Figure, with_figures
 from .motion_model import FIGURES, MotionModel
-from .provenance import Provenance, read_provenance
+from .provenance import Provenance, of_each, read_provenance
 
 _LARGEST = 1e12
 _BESIDE = ("robot", "fits", "provenance")
@@ -76,8 +76,13 @@ def _stated(origin: str) -> Provenance:
 
 def _model(data: dict[str, Any], base: MotionModel) -> MotionModel:
     fits, origins = (_table(key, data.pop(key, {})) for key in ("fits", "provenance"))
-    provenance = {**base.provenance, **read_provenance(fits, origins)}
-    return replace(with_figures(base, _values(data)), provenance=provenance)
+    values = _values(data)
+    made = with_figures(base, values)
+    # What the file says of several figures at once is said of those that it states itself.
+    stated = {figure.key for figure in values}
+    own = made.figures & (stated | (made.figures - base.provenance.keys()))
+    provenance = {**base.provenance, **of_each(read_provenance(fits, origins), own)}
+    return replace(made, provenance=provenance)
 
 
 def _values(table: dict[str, Any], prefix: str = "") -> dict[Figure, Any]:

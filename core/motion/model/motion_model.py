@@ -15,7 +15,7 @@ from .blend import PARABOLA, Blend
 from .elasticity import RIGID, Elasticity
 from .figures import Figure, FitRange, Stage, check_figures, figure, figures_of, part
 from .kinds import POSITIVE, Choice, Range, RealNumber, Row, TruthValue
-from .provenance import Provenance
+from .provenance import Provenance, of_each
 from .rules import ArcTurn, DurationRule, LineTurn, OrientationZone, Overlap, Pace, Space
 from .servo import IDEAL, Servo
 from .taught_range import TaughtRange, merged
@@ -30,7 +30,8 @@ class MotionModel:
     """How a controller drives.
 
     Args:
-        provenance: of every figure, by its dotted key.
+        provenance: of every figure, by its dotted key. One that is stated for several, as ``*`` or
+            ``blend.*``, is kept for each of them that has none of its own.
 
     Raises:
         InputError: a figure makes no sense; the message names its key.
@@ -259,6 +260,7 @@ class MotionModel:
 
     def __post_init__(self) -> None:
         check_figures(self)
+        object.__setattr__(self, "provenance", of_each(self.provenance, self.figures))
 
     def __repr__(self) -> str:
         averages = " + ".join(f"{1e3 * window:.4g}" for window in self.smoothing)

@@ -9,15 +9,18 @@
     speed_mps = [0.05, 1.5]
 
     [provenance]
+    "*" = { status = "assumed", source = "…" }
     "zone.overlap" = { status = "published", source = "…" }
     "time.ramp_s" = { status = "fitted", by = "robotstudio", fitted = ["time.ramp_s in 0 .. 1"] }
 
 A fit is described once, and what came of it points to it. Names of fits hold within their file.
+A key that ends in ``*`` is that of all figures that begin so and have none of their own
+(``blend.*``); of several the longest counts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, cast, get_args
 
@@ -26,6 +29,7 @@ from ...files.toml_text import command_text, key_text, pair_text, value_text
 from .taught_range import TaughtRange, range_entries, read_range
 
 Status = Literal["published", "fitted", "assumed"]
+_SEVERAL = "*"
 
 
 @dataclass(frozen=True)
@@ -105,6 +109,23 @@ def read_provenance(fits: Mapping[str, Any], entries: Mapping[str, Any]) -> dict
     """
     known = {name: _fit(name, entry) for name, entry in fits.items()}
     return {key: _provenance(key, entry, known) for key, entry in entries.items()}
+
+
+def of_each(origins: Mapping[str, Provenance], figures: Iterable[str]) -> dict[str, Provenance]:
+    """The provenance of each figure, where some are stated for several (``*``, ``blend.*``).
+
+    Args:
+        origins: by dotted key, or by how several begin.
+        figures: keys of those that may be meant by the latter.
+    """
+    several = sorted((key for key in origins if key.endswith(_SEVERAL)), key=len)
+    meant = {
+        figure: origins[key]
+        for key in several
+        for figure in figures
+        if figure.startswith(key.removesuffix(_SEVERAL))
+    }
+    return meant | {key: one for key, one in origins.items() if not key.endswith(_SEVERAL)}
 
 
 def provenance_text(origins: Mapping[str, Provenance]) -> str:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
+from flyby.core.motion.model.motion_file import load_motion_model
+from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.provenance import (
     FitRecord,
     Provenance,
@@ -99,3 +102,31 @@ def test_fits_of_one_name_are_told_apart() -> None:
     }
     made = read(provenance_text(origins))
     assert [made[key].fit.name for key in "xyz" if made[key].fit] == ["logs", "logs-2", "logs"]
+
+
+ONE, OTHER, THIRD = (Provenance("assumed", word) for word in ("one", "other", "third"))
+
+
+def test_one_row_stands_for_all_figures_that_have_none() -> None:
+    rows = {"*": ONE, "blend.*": OTHER, "blend.tcp.kind": THIRD}
+    model = MotionModel(provenance=rows)
+    assert set(model.provenance) == model.figures
+    assert model.provenance["period_s"] is ONE
+    assert model.provenance["blend.joint.kind"] is OTHER
+    assert model.provenance["blend.tcp.kind"] is THIRD
+    assert MotionModel(provenance=dict(reversed(rows.items()))).provenance == model.provenance
+    # A figure that is stated later has no provenance by itself.
+    later = replace(model, zone_time=0.01)
+    assert later.figures - later.provenance.keys() == {"zone.least_time_s"}
+
+
+def test_one_row_of_a_file_is_of_the_figures_that_it_states(tmp_path: Path) -> None:
+    base = MotionModel(provenance={"*": ONE})
+    file = tmp_path / "one.toml"
+    file.write_text(
+        "period_s = 0.01\n[zone]\nleast_time_s = 0.02\n"
+        '[provenance]\n"*" = { status = "assumed", source = "other" }\n'
+    )
+    made = load_motion_model(file, base)
+    assert made.provenance == {**base.provenance, "period_s": OTHER, "zone.least_time_s": OTHER}
+    assert set(load_motion_model(file).provenance) == load_motion_model(file).figures
