@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..core.display import counted
-from ..core.errors import OptionError, UnknownNameError
+from ..core.errors import OptionError
 from ..core.own_robots import keep_robot
 from ..core.registry import all_listed
 from ..core.robot_files import load_robot_file, names_file
@@ -72,10 +72,8 @@ def robots(
         found = [arm for owner in owners for arm in all_listed(owner)]
     else:
         found = registry().robots_like(name)
-        if not found:
-            raise UnknownNameError("vendor or robot", name, (*vendors, *registry().robot_names))
-        if len(found) == 1:
-            _show(registry().find_robot(found[0].name), json)
+        if len(found) < 2:
+            _show(registry().find_robot(name), json)
             return
     drivable = [arm for arm in found if arm.refused is None]
     if json:

@@ -13,7 +13,7 @@ from ..core.errors import FlybyError, OptionError
 from ..tasks.diff.diff import diff_with
 from ..tasks.files.source_places import place_json
 from ..tasks.pages.file import check_page, write_page
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from .output.console import fail, print_json, print_rich, print_table, progress
 from .parameters import AsJson, Force, PageFile, with_options
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ..core.difference.texts import FileDifference
     from ..tasks.diff.comparing import RoutineDifference, StateDifference
 
+_NOT_COMPARED = "not compared: cycle times, driven paths, clearances, what cannot be driven"
 _OF_GIT = (7, 9)
 """Arguments that git gives to an external diff: name, then file, hash and mode of both sides; the
 new name and what git says of it, of a file that was renamed."""
@@ -51,6 +52,7 @@ def diff(
 ) -> None:
     """Compare two states: points, tools, zones, speeds, moves, code; cycle times, paths, faults.
 
+    Of programs whose robot nobody names, what needs no robot is compared, and it says so.
     The exit status is 1 if they differ, 2 for an error; as git's external diff it is always 0.
     """
     check_page(report, [*map(Path, paths[:2]), *source.inputs()], force)
@@ -100,8 +102,9 @@ def _list_moves(path: Path, source: SourceOptions) -> None:
     """The moves of a program, a line each, without places in the text."""
     from ..core.difference.data import target_text
     from ..core.difference.moves import move_text
+    from ..tasks.diff.state import program_of
 
-    for move in read_with(path, source).moves:
+    for move in program_of(path, source).moves:
         at = f", at {target_text(move.target)}" if move.target.name and not move.open else ""
         print_rich(f"{move_text(move)}{at}")
 
@@ -112,7 +115,6 @@ def _list_moves(path: Path, source: SourceOptions) -> None:
 def _tell(found: StateDifference, *, markdown: bool) -> None:
     if not found.differs:
         print_rich(f"{found.before} and {found.after} do not differ")
-        return
     for title, heads, rows in _tables(found):
         if not rows:
             continue
@@ -122,10 +124,21 @@ def _tell(found: StateDifference, *, markdown: bool) -> None:
             numbers = {"before s", "after s", "%", "mm apart", "Δ mm", "Δ °", "lines +", "lines -"}
             sided = [(head, "right" if head in numbers else "left") for head in heads]
             print_table(sided, rows, title)
+    for (said, fault), routines in _faults(found).items():
+        print_rich(f"{'- ' * markdown}{said}, {', '.join(routines)}: {fault}")
+    if found.undriven:
+        print_rich(f"{_NOT_COMPARED}: {found.undriven}")
+
+
+def _faults(found: StateDifference) -> dict[tuple[str, str], list[str]]:
+    """Routines by what cannot be driven in them, and whether that is new."""
+    of: dict[tuple[str, str], list[str]] = {}
     for routine in found.routines:
-        for said, faults in (("new fault", routine.faults), ("mended", routine.mended)):
+        kinds = (routine.faults, routine.mended, routine.lasting)
+        for said, faults in zip(("new fault", "mended", "on both sides"), kinds, strict=True):
             for fault in faults:
-                print_rich(f"{'- ' * markdown}{said}, {routine.name}: {fault}")
+                of.setdefault((said, fault), []).append(routine.name)
+    return of
 
 
 def _print_markdown(title: str, heads: Sequence[str], rows: list[tuple[str, ...]]) -> None:
@@ -140,8 +153,9 @@ def _tables(found: StateDifference) -> list[Table]:
     near = any(value is not None for one in found.routines for value in one.clearances)
     heads = ["routine", "before s", "after s", "%", "mm apart"]
     heads += ["clearance before mm", "after mm"] if near else []
+    routines = [_routine_cells(one, near=near) for one in found.routines]
     return [
-        ("routines", heads, [_routine_cells(one, near=near) for one in found.routines]),
+        ("routines", heads, [] if found.undriven else routines),
         (
             "differences",
             ("what", "name", "before", "after", "Δ mm", "Δ °", "line"),
@@ -192,6 +206,7 @@ def _json(found: StateDifference) -> dict[str, Any]:
         "before": str(found.before),
         "after": str(found.after),
         "differs": found.differs,
+        "not_driven": found.undriven or None,
         "routines": [_routine_json(one) for one in found.routines],
         "differences": [_difference_json(one) for one in found.differences],
         "files": [
@@ -217,6 +232,7 @@ def _routine_json(one: RoutineDifference) -> dict[str, Any]:
         "clearance_after_m": one.clearances[1],
         "new_faults": list(one.faults),
         "mended_faults": list(one.mended),
+        "lasting_faults": list(one.lasting),
     }
 
 

@@ -6,7 +6,7 @@ its distribution and its exception, and hides no other.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import metadata
@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING, NoReturn
 import pluggy
 
 from . import hookspec
+from .door import called
 from .errors import InputError, UnknownNameError
 from .robot.arm_list import Listed
-from .robot.model_names import described, matching
+from .robot.model_names import described, matching, meant, near
 from .vendor import Vendor
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 OWN_DISTRIBUTION = "flyby"
 _OFFERED = 12
 """Robots that a message offers at most."""
+_NEAR = 6
+"""Of them those whose names are only like what was written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,29 @@ class BrokenPlugin:
     def __str__(self) -> str:
         kind = type(self.error).__name__
         return f"plugin {self.plugin!r} of {self.distribution} is broken: {kind}: {self.error}"
+
+
+class UnlistedRobotError(UnknownNameError):
+    """A robot that no vendor lists; the message offers those of near names.
+
+    Args:
+        name: the name asked for.
+        near: arms of near names.
+        known: what is known instead.
+        more: what else may be the reason.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        near: Sequence[Listed],
+        known: Iterable[str] = (),
+        more: Iterable[str] = (),
+    ) -> None:
+        super().__init__("robot", name, [arm.name for arm in near])
+        offered = [f"near it are {', '.join(map(described, near))}"] if near else known
+        told = "; ".join((*offered, f"{called('robots')} lists all", *more))
+        self.args = (f"unknown robot {name!r}: {told}",)
 
 
 class _Register:
@@ -124,6 +150,8 @@ class Registry:
             return name
         found = self.robots_like(name)
         if len(found) == 1:
+            if not meant(name, found[0]):
+                raise UnlistedRobotError(name, found)
             if found[0].refused is not None:
                 raise InputError(f"{found[0].model} cannot be driven: {found[0].refused}")
             return found[0].name
@@ -131,7 +159,9 @@ class Registry:
             offered = ", ".join(map(described, found[:_OFFERED]))
             more = f" and {len(found) - _OFFERED} more" if len(found) > _OFFERED else ""
             raise InputError(f"robot {name!r}: which? {offered}{more}")
-        self._unknown("robot", name, vendor, self.robot_names)
+        known = [f"those of {', '.join(sorted(self.vendors))} are known"]
+        near = self.robots_near(name)
+        raise UnlistedRobotError(name, near, [] if near else known, self._broken(vendor))
 
     def robots_like(self, name: str) -> list[Listed]:
         """The arms that a name may mean, whether they can be driven or not."""
@@ -140,6 +170,13 @@ class Registry:
         asked = robot if owners else name
         arms = [arm for owner in owners or self.vendors.values() for arm in all_listed(owner)]
         return matching(asked, arms)
+
+    def robots_near(self, name: str) -> list[Listed]:
+        """The arms whose names are most like one that none has; those of a vendor that it names."""
+        vendor, slash, robot = name.partition("/")
+        owners = [self.vendors[vendor]] if slash and vendor in self.vendors else None
+        arms = [arm for owner in owners or self.vendors.values() for arm in all_listed(owner)]
+        return near(robot if owners else name, arms, _NEAR)
 
     @property
     def robot_names(self) -> tuple[str, ...]:
@@ -176,9 +213,11 @@ class Registry:
 
     def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> NoReturn:
         error = UnknownNameError(kind, name, known)
-        broken = [str(plugin) for plugin in self.broken if plugin.plugin == vendor]
-        error.args = ("; ".join((str(error), *broken)),)
+        error.args = ("; ".join((str(error), *self._broken(vendor))),)
         raise error
+
+    def _broken(self, vendor: str) -> list[str]:
+        return [str(plugin) for plugin in self.broken if plugin.plugin == vendor]
 
 
 def all_listed(vendor: Vendor) -> list[Listed]:

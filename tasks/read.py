@@ -17,7 +17,7 @@ from .catalogue import registry
 from .options.entries import TaskOptions, count, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
-from .setup import RobotOptions, Setup, check_language, configurations, setup_of
+from .setup import RobotOptions, check_language, configurations, setup_of
 
 if TYPE_CHECKING:
     from ..core.backup.backup import Backup
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot
     from ..core.source.execution.answers import Answers
+    from ..core.vendor import Vendor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +120,7 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
             raise OptionError("source is empty: name a file or a folder, or give a program's text")
         file = Path(source)
         if file.is_dir():
-            file = _program_in(file, setup, options)
+            file = _program_in(file, vendor, robot, options)
         check_language(vendor, file)
         answers = answers_of(options)
         program = from_ready_posture(
@@ -129,6 +130,40 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         )
     notes = program.notes if note is None else (note, *program.notes)
     return replace(program, setup=setup, notes=notes)
+
+
+def read_undriven(source: str | Path, options: SourceOptions) -> Program:
+    """What the text of a program says by itself: its moves, for no robot.
+
+    Args:
+        source: a file, or a folder that holds one program.
+
+    Raises:
+        InputError: there is no such file, or nothing says whose language it is.
+        SourceError: it cannot be read, or needs a robot to be read at all.
+    """
+    path = Path(source)
+    _check_it_is_a_program(source)
+    vendor = _vendor_in(path) if path.is_dir() else registry().reader_of(path)
+    file = _program_in(path, vendor, None, options) if path.is_dir() else path
+    return vendor.read_file(file, options.entry, None, answers_of(options), options.others)
+
+
+def _vendor_in(folder: Path) -> Vendor:
+    """Whose programs lie in a folder.
+
+    Raises:
+        InputError: none do, or those of several vendors.
+    """
+    suffixes = {file.suffix.lower() for file in folder.iterdir()}
+    own = [v for v in registry().vendors.values() if suffixes & set(v.suffixes)]
+    found = [v for v in own if suffixes & (set(v.suffixes) - _BESIDE_PROGRAMS)] or own
+    if len(found) == 1:
+        return found[0]
+    if not found:
+        raise InputError(f"{folder} is a folder without a program")
+    names = " and ".join(vendor.name for vendor in found)
+    raise InputError(f"{folder} is a folder with programs of {names}: name a program file in it")
 
 
 def _surrounding(source: str | Path) -> Note | None:
@@ -272,7 +307,7 @@ _BESIDE_PROGRAMS = frozenset({".sub", ".txt", ".urp", ".urpx"})
 """Suffixes of files that are a folder's program where no other file is."""
 
 
-def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
+def _program_in(folder: Path, vendor: Vendor, robot: Robot | None, options: SourceOptions) -> Path:
     """The one file in a folder that can be run by itself.
 
     Where another cannot be parsed, it may be the program itself: then the one must hold the entry
@@ -281,7 +316,6 @@ def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
     Raises:
         InputError: there is none, there are several, or the program's file cannot be parsed.
     """
-    vendor = setup.vendor
     files = sorted(f for f in folder.iterdir() if f.suffix.lower() in vendor.suffixes)
     files = [f for f in files if f.suffix.lower() not in _BESIDE_PROGRAMS] or files
     if len(files) == 1:
@@ -289,12 +323,12 @@ def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
     if not files:
         known = ", ".join(vendor.suffixes)
         raise InputError(f"{folder} is a folder without a program of {vendor.name} ({known})")
-    errors = {file: _error(file, setup, options, options.entry) for file in files}
+    errors = {file: _error(file, vendor, robot, options, options.entry) for file in files}
     found = [file for file, error in errors.items() if error is None]
     broken = [(f, e) for f, e in errors.items() if isinstance(e, ParseError) and _of(e, f)]
     if len(found) == 1:
         entry = options.entry or "main"
-        if not broken or _error(found[0], setup, options, entry) is None:
+        if not broken or _error(found[0], vendor, robot, options, entry) is None:
             return found[0]
     names = "".join(f", {file.name}" for file in found or files).replace(",", ":", 1)
     why = "".join(f"; not read: {error}" for _, error in broken)
@@ -302,11 +336,11 @@ def _program_in(folder: Path, setup: Setup, options: SourceOptions) -> Path:
 
 
 def _error(
-    file: Path, setup: Setup, options: SourceOptions, entry: str | None
+    file: Path, vendor: Vendor, robot: Robot | None, options: SourceOptions, entry: str | None
 ) -> FlybyError | None:
     """Why a file does not run by itself; None if it does."""
     try:
-        setup.vendor.read_file(file, entry, setup.robot, answers_of(options), options.others)
+        vendor.read_file(file, entry, robot, answers_of(options), options.others)
     except FlybyError as error:
         return error
     return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from difflib import SequenceMatcher
@@ -96,16 +97,20 @@ def _zone_text(zone: Zone) -> str:
 def _speed_text(speed: Speed) -> str:
     """A speed with all that it limits."""
     parts = {
-        "reorientation": speed.reorientation,
-        "TCP acceleration": speed.tcp_acceleration,
-        "joint acceleration": speed.joint_acceleration,
+        "reorientation": (speed.reorientation, math.degrees(1.0), "°/s"),
+        "TCP acceleration": (speed.tcp_acceleration, 1e3, " mm/s²"),
+        "joint acceleration": (speed.joint_acceleration, math.degrees(1.0), "°/s²"),
     }
     own = speed_shown(speed)
     if speed.name is not None and speed.tcp is not None:
         own = f"{speed.name} ({1e3 * speed.tcp:.5g} mm/s)"
-    shown = [own, *(f"{what} {value:.4g}" for what, value in parts.items() if value is not None)]
+    more = [
+        f"{what} {scale * value:.4g}{unit}"
+        for what, (value, scale, unit) in parts.items()
+        if value is not None
+    ]
     share = speed.joint_acceleration_fraction
-    return ", ".join(shown) + ("" if share == 1.0 else f", acceleration {100 * share:.3g} %")
+    return ", ".join([own, *more]) + ("" if share == 1.0 else f", acceleration {100 * share:.3g} %")
 
 
 def _load(move: Move) -> str:

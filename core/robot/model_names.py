@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from difflib import SequenceMatcher
 
 from .arm_list import Listed
 
@@ -20,6 +21,10 @@ _BESIDE = re.compile(
 _FAMILIES = {"gofa": "crb 15000", "yumi": "irb 14000"}
 """What makers call a family, and the model it is."""
 _WORD = re.compile(r"\d+(?:\.\d+)?[a-z]*|[a-z]+")
+_GENERATION = 9.0
+"""Up to which a number that is no payload tells a generation: KR 210 R2700-2."""
+_ALIKE = 0.5
+"""Of two names, from 0 to 1, from which on one may be the other mistyped."""
 _VARIANT = re.compile(r"(?:_+g)?_+0\d$")
 """Of the libraries of simulators: ``IRB120_3_58_01``, ``IRB4600_40_255_G_01``."""
 
@@ -52,6 +57,64 @@ def matching(name: str, arms: Iterable[Listed]) -> list[Listed]:
     ranked = [(rank, arm) for arm in arms if (rank := _rank(written, asked, arm)) is not None]
     best = min((rank for rank, _ in ranked), default=None)
     return [arm for rank, arm in ranked if rank == best]
+
+
+def meant(name: str, arm: Listed) -> bool:
+    """Whether a name that matches an arm can mean no sister of it that is not listed.
+
+    Left out may be payload and reach, and what stands before the first number. A variant
+    (``LID``, ``PA``, ``-2``) is another arm than the one without it.
+    """
+    asked = words_of(name)
+    if _rank(_bare(name), asked, arm) == _CALLED:
+        return True
+    return any(_only_figures(asked, words_of(model), arm) for model in (arm.model, *arm.aliases))
+
+
+def _only_figures(asked: Sequence[str], said: Sequence[str], arm: Listed) -> bool:
+    """Whether the words of a model that are not asked for tell payload or reach alone."""
+    rest = list(asked)
+    for k, word in enumerate(said):
+        if rest and _same(rest[0], word):
+            del rest[0]
+        elif any(w[0].isdigit() for w in said[:k]) and not _is_figure(word, arm):
+            return False
+    return not rest
+
+
+def _is_figure(word: str, arm: Listed) -> bool:
+    try:
+        value = float(word)
+    except ValueError:
+        return word == "r"  # R2700
+    return "." in word or value > _GENERATION or value == arm.payload
+
+
+def near(name: str, arms: Iterable[Listed], count: int) -> list[Listed]:
+    """The arms whose names are most like one that none has; the model counts before its figures."""
+    asked = words_of(name)
+    if not asked:
+        return []
+    ranked = [(_likeness(asked, words_of(arm.model)), arm) for arm in arms]
+    ranked = [(alike, arm) for alike, arm in ranked if alike[0] >= _ALIKE]
+    ranked.sort(key=lambda one: one[0], reverse=True)
+    return [arm for _, arm in ranked[:count]]
+
+
+def _likeness(asked: tuple[str, ...], said: tuple[str, ...]) -> tuple[float, float]:
+    """How much alike the models are, and the whole names, from 0 to 1."""
+    models = (_model(asked), _model(said))
+    return _ratio(*models), _ratio(" ".join(asked), " ".join(said))
+
+
+def _model(words: tuple[str, ...]) -> str:
+    """Family and model: what stands up to the first number."""
+    number = next((k for k, word in enumerate(words) if word[-1].isdigit() or word[0].isdigit()), 0)
+    return "".join(words[: number + 1])
+
+
+def _ratio(one: str, other: str) -> float:
+    return SequenceMatcher(None, one, other, autojunk=False).ratio()
 
 
 _CALLED, _BEGINS, _HOLDS = range(3)

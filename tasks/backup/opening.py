@@ -109,7 +109,7 @@ def _as_backed_up(backup: Backup, index: int, made: Setup, options: RobotOptions
 def read_task(
     backup: Backup,
     task: Task,
-    setup: Setup,
+    setup: Setup | None,
     entry: str | None,
     answers: Answers,
     others: Iterable[str | Path],
@@ -119,7 +119,7 @@ def read_task(
 
     Args:
         backup, task: where it stands.
-        setup: its robot.
+        setup: its robot; None for what the text says by itself.
         entry: the routine, with arguments; None for the one that the controller would start; or
             all, for none but the list of them.
         answers, others, start: see `core.source.reading.ReadOptions`.
@@ -144,9 +144,9 @@ def read_task(
     if entry is None:
         entry = task.entry if chosen is None else chosen.name
     beside = [backup.root / name for name in task.files if name != file]
-    return setup.vendor.read_file(
-        backup.root / file, entry, setup.robot, answers, others, start, beside
-    )
+    vendor = registry().find_vendor(backup.vendor) if setup is None else setup.vendor
+    robot = None if setup is None else setup.robot
+    return vendor.read_file(backup.root / file, entry, robot, answers, others, start, beside)
 
 
 def _chosen(backup: Backup, task: Task, entry: str | None) -> BackupEntry | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -26,10 +26,11 @@ from ...core.difference.differences import Difference, Differing
 from ...core.difference.moves import move_differences
 from ...core.difference.texts import FileDifference, file_differences
 from ...core.errors import InputError
-from .state import Routine, StationState, state_of
+from .state import MAIN, Routine, StationState, state_of
 
 if TYPE_CHECKING:
     from ...core.backup.backup import Backup
+    from ...core.program.program import Program
     from ...core.program.tool import Tool, WorkObject
     from ...core.robot.joint import Joint
     from ...core.spatial.pose import Pose
@@ -48,12 +49,14 @@ class RoutineDifference:
 
     Args:
         name: of the routine.
-        times: s that it takes before and after; None where it cannot be driven, or is not there.
+        times: s that it takes before and after; None where it cannot be driven, is not there, or
+            no robot is known.
         distance: m, the greatest distance of either path of the TCP from the other one; None where
             one of them is not known.
         clearances: m to the cell before and after; None without a cell.
         faults: what cannot be driven after, and could before, or is otherwise.
         mended: what could not be driven before, and can now.
+        lasting: what cannot be driven on either side.
     """
 
     name: str
@@ -62,6 +65,7 @@ class RoutineDifference:
     clearances: tuple[float | None, float | None]
     faults: tuple[str, ...]
     mended: tuple[str, ...]
+    lasting: tuple[str, ...] = ()
 
     @property
     def differs(self) -> bool:
@@ -81,6 +85,8 @@ class StateDifference:
         files: of source texts.
         routines: how each is driven, whether it differs or not.
         runs: of each routine before and after; None where it cannot be driven, or is not there.
+        undriven: why times, paths, clearances and what cannot be driven are not compared: one of
+            the states names no robot; empty if they are.
     """
 
     before: Path
@@ -91,6 +97,7 @@ class StateDifference:
     runs: Mapping[str, tuple[Run | None, Run | None]] = field(
         default_factory=dict, repr=False, compare=False
     )
+    undriven: str = ""
 
     @property
     def differs(self) -> bool:
@@ -103,10 +110,15 @@ def compared(old: Path, new: Path, options: SourceOptions) -> StateDifference:
     for path in (old, new):
         if not path.exists():
             raise InputError(f"{path}: there is no such file or folder")
-    options.say(f"driving {old}")
+    options.say(f"reading {old}")
     one = state_of(old, options)
-    options.say(f"driving {new}")
+    options.say(f"reading {new}")
     other = state_of(new, options)
+    _check_read(one, other)
+    one, other = _read_as(one, other), _read_as(other, one)
+    undriven = one.undriven or other.undriven
+    if undriven:
+        one, other = one.read_alone(), other.read_alone()
     options.say("comparing")
     found = _once([*_of_stations(one, other), *_of_programs(one, other)])
     order = list(Differing)
@@ -119,7 +131,23 @@ def compared(old: Path, new: Path, options: SourceOptions) -> StateDifference:
         file_differences(_called_as(other, one), other.texts),
         tuple(_driven(name, a, b) for name, a, b in pairs),
         {name: (_run(a), _run(b)) for name, a, b in pairs},
+        undriven,
     )
+
+
+def _check_read(one: StationState, other: StationState) -> None:
+    """Refuse programs of which nothing can be read on either side: nobody knows what differs."""
+    if one.backup is None and other.backup is None and not (one.programs or other.programs):
+        errors = [side.error for state in (one, other) for side in state.routines.values()]
+        raise InputError("; ".join(dict.fromkeys(errors)) or f"{one.path}: nothing drives a robot")
+
+
+def _read_as(state: StationState, other: StationState) -> StationState:
+    """A state that cannot be read, with its fault in each of the routines of the other one."""
+    alone = state.routines.get(MAIN)
+    if alone is None or alone.program is not None or not other.programs:
+        return state
+    return replace(state, routines=dict.fromkeys(other.routines, alone))
 
 
 def _run(side: Routine | None) -> Run | None:
@@ -143,9 +171,9 @@ def _once(found: list[Difference]) -> list[Difference]:
 
 def _of_programs(one: StationState, other: StationState) -> Iterator[Difference]:
     """Data that moves use, and the moves of the routines that both have."""
-    old, new = one.programs, other.programs
-    yield from tool_differences(_tools(one), _tools(other))
-    yield from frame_differences(_frames(one), _frames(other))
+    old, new = _told(one, other), _told(other, one)
+    yield from tool_differences(_tools(one, old), _tools(other, new))
+    yield from frame_differences(_frames(one, old), _frames(other, new))
     yield from load_differences(loads_of(old), loads_of(new))
     yield from point_differences(points_of(old), points_of(new))
     for name, a, b in paired(*_called_alike(old, new)):
@@ -164,14 +192,28 @@ def _called_alike(
     return old, new
 
 
-def _tools(state: StationState) -> dict[str, Tool]:
+def _told(state: StationState, other: StationState) -> dict[str, Program]:
+    """Programs of a state, without those that cannot be read on the other side.
+
+    What is in these nobody can tell from what is gone.
+    """
+    pairs = paired(*_called_alike(state.routines, other.routines))
+    unread = {name for name, _, b in pairs if b is not None and b.program is None}
+    return {
+        name: program
+        for name, program in state.programs.items()
+        if not {name, name.rpartition("/")[2]} & unread
+    }
+
+
+def _tools(state: StationState, programs: Mapping[str, Program]) -> dict[str, Tool]:
     declared = {} if state.backup is None else dict(state.backup.tools)
-    return {**tools_of(state.programs), **declared}
+    return {**tools_of(programs), **declared}
 
 
-def _frames(state: StationState) -> dict[str, WorkObject]:
+def _frames(state: StationState, programs: Mapping[str, Program]) -> dict[str, WorkObject]:
     declared = {} if state.backup is None else dict(state.backup.frames)
-    return {**frames_of(state.programs), **declared}
+    return {**frames_of(programs), **declared}
 
 
 def _of_stations(one: StationState, other: StationState) -> Iterator[Difference]:
@@ -217,7 +259,8 @@ def _files(backup: Backup) -> dict[str, str]:
 
 def _driven(name: str, one: Routine | None, other: Routine | None) -> RoutineDifference:
     before, after = _faults(one), _faults(other)
-    mended = () if other is None else tuple(fault for fault in before if fault not in after)
+    readable = other is not None and other.program is not None
+    mended = tuple(fault for fault in before if fault not in after) if readable else ()
     return RoutineDifference(
         name,
         (_time(one), _time(other)),
@@ -225,6 +268,7 @@ def _driven(name: str, one: Routine | None, other: Routine | None) -> RoutineDif
         (_clearance(one), _clearance(other)),
         tuple(fault for fault in after if fault not in before),
         mended,
+        tuple(fault for fault in after if fault in before),
     )
 
 
@@ -242,7 +286,7 @@ def _faults(side: Routine | None) -> tuple[str, ...]:
     if side is None:
         return ()
     if side.run is None:
-        return (_PLACE.sub("", side.error),)
+        return (_PLACE.sub("", side.error),) if side.error else ()
     moves = side.run.program.moves
     found = (
         f"{moves[fault.move].target.name or f'move {fault.move + 1}'}: {fault.message}"

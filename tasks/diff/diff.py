@@ -15,13 +15,15 @@ if TYPE_CHECKING:
 def diff_with(before: str | Path, after: str | Path, options: SourceOptions) -> StateDifference:
     """What differs between two states of a program or a station.
 
-    Every routine that needs no arguments is driven on both sides.
+    Every routine that needs no arguments is driven on both sides; where nobody says which robot,
+    what needs none is compared, and the result says why (`StateDifference.undriven`).
 
     Args:
         before, after: programs, folders or backups.
 
     Raises:
-        FlybyError: one of them cannot be read at all, or nobody says which robot.
+        FlybyError: one of them cannot be read at all, or of neither can anything be
+            read.
     """
     from .comparing import compared
 

@@ -11,14 +11,16 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError
+from ...core.door import called, spelt
+from ...core.errors import FlybyError, OptionError
 from ...core.program.entry_point import ALL
 from ..backup.finding import find_backup
 from ..backup.opening import read_task, setup_in
+from ..backup.surrounding import surrounding_note
 from ..catalogue import registry
 from ..emulate import EmulateOptions, emulate_with
-from ..read import SourceOptions, answers_of, read_with
-from ..setup import setup_of
+from ..read import SourceOptions, answers_of, read_undriven, read_with
+from ..setup import Setup, setup_of
 
 if TYPE_CHECKING:
     from ...core.backup.backup import Backup, Task
@@ -36,8 +38,8 @@ class Routine:
 
     Args:
         program: what it drives; None if it cannot be read.
-        run: the same driven; None if it cannot be.
-        error: why; empty if it can.
+        run: the same driven; None if it cannot be, or no robot is known.
+        error: why it cannot be; empty if it can.
     """
 
     program: Program | None = None
@@ -54,12 +56,14 @@ class StationState:
         routines: by name; of a backup as ``task/routine``.
         backup: if it is one.
         texts: of its source files, by name below its folder.
+        undriven: why nothing of it is driven; empty if it is.
     """
 
     path: Path
     routines: Mapping[str, Routine]
     backup: Backup | None = None
     texts: Mapping[str, str] = field(default_factory=dict, repr=False)
+    undriven: str = ""
 
     @property
     def programs(self) -> dict[str, Program]:
@@ -67,40 +71,84 @@ class StationState:
         found = {name: routine.program for name, routine in self.routines.items()}
         return {name: program for name, program in found.items() if program is not None}
 
+    def read_alone(self) -> StationState:
+        """The same with nothing driven, to be compared with one of which nobody knows the robot."""
+        read = {
+            name: routine if routine.program is None else Routine(routine.program)
+            for name, routine in self.routines.items()
+        }
+        return replace(self, routines=read)
+
 
 def state_of(path: Path, options: SourceOptions) -> StationState:
     """Read and drive a state.
 
     Every routine that needs no arguments and moves the robot is driven by itself, unless one is
-    named; what cannot be read or driven says why in its place.
+    named; what cannot be read or driven says why in its place. Where nobody says which robot, what
+    needs none is read.
 
     Raises:
-        FlybyError: the path is neither a program nor a backup, or nobody says which robot.
+        FlybyError: the path is neither a program nor a backup, or nobody says which robot options
+            are for.
     """
-    named = options.robot is not None or options.cell is not None
-    backup = None if named and path.is_file() else find_backup(path, registry())
+    backup = _backup(path, options)
     if backup is None:
         return _of_program(path, options)
     return _of_backup(path, backup, options)
 
 
+def program_of(path: Path, options: SourceOptions) -> Program:
+    """The program that options name; what its text says by itself where nobody says which robot.
+
+    Raises:
+        FlybyError: it cannot be read.
+    """
+    if _backup(path, options) is None and _undriven(path, options):
+        return read_undriven(path, options)
+    return read_with(path, options)
+
+
+def _backup(path: Path, options: SourceOptions) -> Backup | None:
+    named = options.robot is not None or options.cell is not None
+    return None if named and path.is_file() else find_backup(path, registry())
+
+
 def _of_program(path: Path, options: SourceOptions) -> StationState:
-    setup_of(options)  # asks for the robot
-    names = _entries(path, options) if options.entry is None else [options.entry]
+    undriven = _undriven(path, options)
+    read = read_undriven if undriven else read_with
+    names = [options.entry] if options.entry else _entries(partial(read, path), options)
     routines = {}
     for name in names:
         entry = None if name == MAIN else name
-        routines[name] = _driven(partial(read_with, path, replace(options, entry=entry)))
-    texts: dict[str, str] = {}
+        by_name = partial(read, path, replace(options, entry=entry))
+        routines[name] = _read(by_name) if undriven else _driven(by_name)
+    texts = {path.name: _text(path)} if path.is_file() else {}
     for routine in routines.values():
         texts |= _texts(routine.program, path.parent if path.is_file() else path)
-    return StationState(path, routines, texts=texts)
+    return StationState(path, routines, texts=texts, undriven=undriven)
 
 
-def _entries(path: Path, options: SourceOptions) -> list[str]:
+def _undriven(path: Path, options: SourceOptions) -> str:
+    """Why a program is not driven: nobody says which robot; empty if somebody does.
+
+    Raises:
+        FlybyError: the robot cannot be used, or options need one.
+    """
+    of_a_robot = options.motion, options.machine_data, options.vendor, options.start
+    if options.robot is None and options.cell is None and not any(of_a_robot):
+        note = surrounding_note(path, registry()) if path.is_file() else None
+        return (
+            f"{path} does not say which robot drives it; {spelt('robot')} names one "
+            f"({called('robots')} lists them), or {spelt('cell')}" + (f"; {note}" if note else "")
+        )
+    setup_of(options)
+    return ""
+
+
+def _entries(read: Callable[[SourceOptions], Program], options: SourceOptions) -> list[str]:
     """The routines of a program that move the robot; its main one where it lists none."""
     try:
-        found = read_with(path, replace(options, entry=ALL)).entries
+        found = read(replace(options, entry=ALL)).entries
     except FlybyError:
         return [MAIN]
     return [e.name for e in found if e.moves and not e.parameters] or [MAIN]
@@ -112,14 +160,20 @@ def _of_backup(path: Path, backup: Backup, options: SourceOptions) -> StationSta
     moving = [task for task in backup.tasks if task.robot is not None]
     if options.task is not None:
         moving = [task for task in moving if task.name.casefold() == options.task.casefold()]
+    undriven = ""
     for task in moving:
         for file in task.files:
             texts[file] = _text(backup.root / file)
+        try:
+            setup = setup_in(backup, task, options)
+        except OptionError as error:
+            setup, undriven = None, str(error)
         for name in _names(task, options):
-            routine = _driven(partial(_read, backup, task, options, name))
+            of_task = partial(_of_task, backup, task, setup, options, name)
+            routine = _read(of_task) if setup is None else _driven(of_task)
             routines[f"{task.name}/{name}"] = routine
             texts |= _texts(routine.program, backup.root)
-    return StationState(path, routines, backup, texts)
+    return StationState(path, routines, backup, texts, undriven)
 
 
 def _names(task: Task, options: SourceOptions) -> list[str]:
@@ -131,23 +185,31 @@ def _names(task: Task, options: SourceOptions) -> list[str]:
     return [e.name for e in task.entries if e.moves != 0 and not e.parameters]
 
 
-def _read(backup: Backup, task: Task, options: SourceOptions, name: str) -> Program:
-    setup = setup_in(backup, task, options)
+def _of_task(
+    backup: Backup, task: Task, setup: Setup | None, options: SourceOptions, name: str
+) -> Program:
     entry = None if name == MAIN else name
     found = read_task(backup, task, setup, entry, answers_of(options), (), None)
     return replace(found, setup=setup)
 
 
-def _driven(read: Callable[[], Program]) -> Routine:
-    """A routine read and driven, as far as it can be."""
+def _read(read: Callable[[], Program]) -> Routine:
+    """A routine that no known robot drives, read if it can be."""
     try:
-        program = read()
+        return Routine(read())
     except FlybyError as error:
         return Routine(error=str(error))
+
+
+def _driven(read: Callable[[], Program]) -> Routine:
+    """A routine read and driven, as far as it can be."""
+    routine = _read(read)
+    if routine.program is None:
+        return routine
     try:
-        return Routine(program, emulate_with(program, EmulateOptions()))
+        return replace(routine, run=emulate_with(routine.program, EmulateOptions()))
     except FlybyError as error:
-        return Routine(program, error=str(error))
+        return replace(routine, error=str(error))
 
 
 def _texts(program: Program | None, folder: Path) -> dict[str, str]:

@@ -61,7 +61,7 @@ def difference_page(found: StateDifference) -> Page:
         draft.drive(runs, cell_of(runs[-1]), sides, name)
         shown += runs
     tables = [
-        _routines(found, tracks),
+        *([] if found.undriven else [_routines(found, tracks)]),
         _differences(found, draft),
         _faults(found),
         _files(found),
@@ -82,9 +82,14 @@ def difference_page(found: StateDifference) -> Page:
         draft.files(),
         [table for table in tables if table.rows],
         CHARTS,
-        notes=() if found.differs else ("The two do not differ.",),
+        notes=_notes(found),
         made_by=made_by(),
     )
+
+
+def _notes(found: StateDifference) -> tuple[str, ...]:
+    same = () if found.differs else ("The two do not differ.",)
+    return (*same, f"Nothing is driven: {found.undriven}.") if found.undriven else same
 
 
 def _title(draft: PageDraft, track: int) -> str:
@@ -159,6 +164,7 @@ def _faults(found: StateDifference) -> PageTable:
         for said, level, faults in (
             ("new", "error", routine.faults),
             ("mended", "note", routine.mended),
+            ("on both sides", "warning", routine.lasting),
         )
         for fault in faults
     ]

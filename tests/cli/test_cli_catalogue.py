@@ -85,8 +85,12 @@ def test_a_broken_plugin_is_a_warning(
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("robots", "abb/irb664-180-255"), "did you mean 'abb/irb6640-180-255'"),
-        (("robots", "abbb"), "unknown vendor or robot 'abbb': did you mean 'abb'"),
+        (("robots", "abb/irb664-180-255"), "near it are abb/irb6640-180-255 (180 kg, 2.55 m)"),
+        (("robots", "IRB 6640-999"), "abb/irb6640-130-320 (130 kg, 3.2 m)"),
+        (("robots", "KR 6 R901"), "near it are kuka/kr6-r900-2 (6 kg, 0.9 m)"),
+        (("robots", "abbb"), "unknown robot 'abbb': those of abb, kuka, ur are known"),
+        (("robots", "abbb"), "'flyby robots' lists all"),
+        (("robots", "KR 180-2"), "near it are kuka/kr180-2-pa (180 kg, 3.2 m)"),
     ],
 )
 def test_unknown_names_come_with_an_offer(

@@ -49,7 +49,7 @@ def test_json_and_markdown(flyby: Flyby, both: tuple[Path, Path]) -> None:
 
 
 def test_errors_have_a_status_of_their_own(flyby: Flyby, both: tuple[Path, Path]) -> None:
-    for words in (("a.mod", "b.mod", *ROBOT), (*both,), ("a", "b", "c")):
+    for words in (("a.mod", "b.mod", *ROBOT), ("a.mod", "b.mod"), ("a", "b", "c")):
         result = flyby("diff", *words)
         assert result.exit_code == 2, result.output
         assert "error:" in result.output
@@ -88,3 +88,55 @@ def test_git_calls_it(both: tuple[Path, Path], tmp_path: Path) -> None:
     git("mv", "job.mod", "other.mod")
     renamed = git("-c", f"diff.rapid.command={command}", "diff", "-M", "HEAD")
     assert "diff of job.mod → other.mod" in renamed and "z50 (50 mm)" in renamed
+
+
+def test_without_a_robot_what_needs_none_is_compared(
+    flyby: Flyby, both: tuple[Path, Path], tmp_path: Path
+) -> None:
+    result = flyby("diff", *both)
+    assert result.exit_code == 1
+    for part in ("z50 (50 mm)", "v200 (200 mm/s)", "not compared: cycle times", "--robot"):
+        assert part in result.output
+    assert "not driven" not in result.output
+    told = json.loads(flyby("diff", *both, "--json").stdout)
+    assert "--robot" in told["not_driven"]
+    assert {one["subject"] for one in told["differences"]} == {"zone", "speed"}
+    assert told["routines"][0]["cycle_time_before_s"] is None
+    same = flyby("diff", both[0], both[0])
+    assert same.exit_code == 0
+    assert "do not differ" in same.output and "not compared: cycle times" in same.output
+    assert flyby("diff", *both, "--report", tmp_path / "page.html").exit_code == 1
+    assert "Nothing is driven" in (tmp_path / "page.html").read_text("utf-8")
+    listed = flyby("diff", both[0]).stdout.splitlines()
+    assert listed[0].startswith("MoveJ p1, v1000, fine, tool0, wobj0, at ")
+
+
+def test_options_of_a_robot_ask_for_one(flyby: Flyby, both: tuple[Path, Path]) -> None:
+    result = flyby("diff", *both, "--start", "0,0,0,0,0,0")
+    assert result.exit_code == 2 and "which robot?" in result.output
+
+
+@pytest.mark.parametrize("robot", [(), ROBOT])
+def test_what_nobody_can_read_is_not_called_the_same(
+    flyby: Flyby, both: tuple[Path, Path], tmp_path: Path, robot: tuple[str, ...]
+) -> None:
+    broken = [tmp_path / "one.mod", tmp_path / "two.mod"]
+    for path, whole in zip(broken, both, strict=True):
+        path.write_text(whole.read_text().replace("PROC main()", "PROC main("))
+    result = flyby("diff", *broken, *robot)
+    assert result.exit_code == 2 and "one.mod:" in result.output
+    result = flyby("diff", both[0], broken[0], *robot)
+    assert result.exit_code == 1
+    assert "new fault, main: ','" in result.output
+    assert "point" not in result.output and "mended" not in result.output
+    result = flyby("diff", broken[0], both[0], *robot)
+    assert result.exit_code == 1 and "mended, main: ','" in result.output
+
+
+def test_what_cannot_be_driven_on_either_side_is_said(
+    flyby: Flyby, both: tuple[Path, Path]
+) -> None:
+    both[0].write_text(both[0].read_text().replace("0,100,0", "0,9100,0"))
+    result = flyby("diff", both[0], both[0], *ROBOT)
+    assert result.exit_code == 0
+    assert "on both sides, main:" in result.output and "cannot be reached" in result.output

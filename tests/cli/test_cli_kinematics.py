@@ -89,7 +89,7 @@ def test_joints_beyond_their_range_are_a_warning() -> None:
         (2, ("ik", ROBOT, "1,2"), "a pose is x,y,z"),
         (2, ("ik", ROBOT, "1,2,3,1,1,0,0"), "must have length 1, not 1.41421"),
         (1, ("ik", ROBOT, "9000,0,0"), "out of reach"),
-        (1, ("fk", "abb/irb6640-180-25", "0"), "did you mean 'abb/irb6640-180-255'"),
+        (1, ("fk", "abb/irb6640-180-25", "0"), "near it are abb/irb6640-180-255 (180 kg, 2.55 m)"),
     ],
 )
 def test_wrong_input_is_one_message(status: int, words: tuple[str, ...], message: str) -> None:

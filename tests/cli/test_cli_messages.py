@@ -24,7 +24,7 @@ def test_a_robot_is_known_without_its_vendor_and_offered_where_it_is_misspelt(
     result = flyby("emulate", SQUARE, "--robot", "IRB 6640-180/2.55")
     assert f"on {ROBOT}" in result.stdout
     result = flyby("emulate", SQUARE, "--robot", "irb6640-18-256")
-    assert f"did you mean '{ROBOT}'" in result.stderr
+    assert f"near it are {ROBOT}" in result.stderr
 
 
 def test_a_folder_and_a_name_without_suffix_are_told(flyby: Flyby, tmp_path: Path) -> None:

@@ -114,8 +114,37 @@ def test_names_that_people_and_controllers_write(name) -> None:
 @pytest.mark.parametrize("name", ["irb6640-180-254", "IRB 2400-10/1.60", "irb120-3/0.7"])
 def test_a_reach_is_rounded_and_not_guessed(name) -> None:
     """Another reach is another arm, or a slip of the pen."""
-    with pytest.raises(UnknownNameError, match="did you mean"):
+    with pytest.raises(UnknownNameError, match="near it are"):
         find_robot(name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["IRB 6700-150/3.20", "IRB 5710-90/2.30", "KR 180-2", "KR 40", "KR 60-4", "KR 210 R2900 prime"],
+)
+def test_a_variant_is_another_arm_than_the_one_without(name) -> None:
+    """The only listed arm whose name begins so is a sister: it is offered, and not taken."""
+    (sister,) = installed().robots_like(name)
+    with pytest.raises(UnknownNameError, match=f"near it are {sister.name} ") as caught:
+        find_robot(name)
+    assert "kg" in str(caught.value)
+
+
+@given(name=st.text(max_size=30))
+def test_near_names_are_offered_and_never_taken(name) -> None:
+    near = installed().robots_near(name)
+    assert len(near) == len({arm.name for arm in near}) <= 6
+    if not installed().robots_like(name):
+        with pytest.raises(UnknownNameError):
+            installed().robot_called(name)
+
+
+@pytest.mark.parametrize("row", DRIVEN, ids=lambda row: row["name"])
+def test_a_slip_of_the_pen_is_offered_the_arm(row) -> None:
+    model = row["model"]
+    slip = model[:-1] + ("7" if model[-1] != "7" else "8")
+    if not installed().robots_like(slip):
+        assert row["name"] in {arm.name for arm in installed().robots_near(slip)}
 
 
 def test_where_several_may_be_meant_they_are_offered() -> None:

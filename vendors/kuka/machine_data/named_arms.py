@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from ....core.errors import InputError
 from ....core.robot.arm_list import ArmList, Listed
 from ....core.robot.model import Robot
-from ....core.robot.model_names import matching
+from ....core.robot.model_names import matching, meant
 from ....core.spatial.pose import IDENTITY
 
 FindRobot = Callable[[str], Robot]
@@ -80,11 +81,19 @@ def listed_arm(
 def name_alone(names: Sequence[str], find_robot: FindRobot) -> Robot | None:
     """The one listed arm that names mean, of which nothing else is known; None if several may be.
 
+    Only how the arm is mounted may be left out of a name: an ``EXTRA`` is another arm.
+
     Raises:
         InputError: it cannot be driven; with the reason.
     """
-    for arms in named(names):
-        if len(arms) > 1:
+    for name in names:
+        words = name.replace("#", " ").split()
+        of_arm = takewhile(lambda word: not _MOUNTING.fullmatch(word.lower()), words)
+        asked = " ".join(of_arm)
+        arms = matching(asked, _arms())
+        if not arms:
+            continue
+        if len(arms) > 1 or not meant(asked, arms[0]):
             return None
         if arms[0].refused is not None:
             raise InputError(f"{arms[0].model} cannot be driven: {arms[0].refused}")
