@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from .errors import InputError
 from .program.speed import Speed
-from .program.zone import Radius, Zone
+from .program.zone import Radius, Zone, ZoneKind
 
 if TYPE_CHECKING:
     from .program.event import Event
@@ -45,7 +45,8 @@ class MoveWords:
     """What can be said of one kind of move.
 
     Args:
-        zones: kinds of zone beside stops, the preferred one first.
+        zones: kinds of zone beside stops, the preferred one first; of zones that only this make
+            has, their `ZoneKind`.
         speeds: the numbers of `Speed` that there are words for.
         needs: those of ``speeds`` that must be stated, since the language's own default would be
             taken instead.
@@ -55,7 +56,7 @@ class MoveWords:
         InputError: a name is no number of `Speed`, or something is needed that cannot be said.
     """
 
-    zones: tuple[type[Zone], ...]
+    zones: tuple[type[Zone] | ZoneKind, ...]
     speeds: frozenset[str]
     needs: frozenset[str] = frozenset()
     configurations: bool = True

@@ -10,7 +10,7 @@ import numpy as np
 from ..door import called, spelt
 from ..program.move import Move, MoveJ, Opaque, Wait
 from ..program.target import JointTarget, PoseTarget
-from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
+from ..program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from .finding import Hit, ProgramSubject, Rule, Severity
 from .text_rules import pitfalls, unused_targets
 
@@ -53,6 +53,8 @@ def has_no_size(zone: Zone) -> bool:
         return zone.tcp == 0.0 and zone.angle == 0.0
     if isinstance(zone, Angle):
         return zone.angle == 0.0
+    if isinstance(zone, VendorZone):
+        return zone.size == 0.0
     return isinstance(zone, ContourFraction) and zone.fraction == 0.0
 
 

@@ -24,6 +24,8 @@ class Speed:
         joint_acceleration: acceleration of the leading joint, rad/s² (URScript ``movej`` a).
         joint_acceleration_fraction: share of each joint's own maximum, in (0, 1] (RAPID
             ``AccSet``, KRL ``$ACC_AXIS``).
+        acceleration_override: what the accelerations are multiplied by that the program does not
+            state, the joints' and the TCP's alike; may be above 1 (FANUC ``ACC150``).
         jerk_fraction: share of the controller's own jerk, in (0, 1] (RAPID ``AccSet`` ramp).
         duration: time in s that the move takes, overriding the speeds (RAPID ``\\T``,
             URScript t).
@@ -43,6 +45,7 @@ class Speed:
     reorientation_acceleration: float | None = None
     joint_acceleration: float | None = None
     joint_acceleration_fraction: float = 1.0
+    acceleration_override: float = 1.0
     jerk_fraction: float = 1.0
     duration: float | None = None
     name: str | None = None

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ..errors import InputError
 
@@ -117,19 +119,103 @@ class Angle:
         _check("Angle", angle=self.angle)
 
 
-@dataclass(frozen=True, slots=True)
-class SpeedFraction:
-    """KRL ``C_VEL``: blending begins when braking has come down to this share of the speed."""
+ReachLaw = Callable[[Any, Any, Any], Any]
+"""Size, speed and acceleration → distance; of sums, products and quotients alone, so that
+derivatives go through it."""
 
-    fraction: float
+
+def braking(size: Any, speed: Any, acceleration: Any) -> Any:
+    """The distance in which braking goes from a share of the speed to rest: (f v)² / 2 A."""
+    share = size * speed
+    return share * share / (acceleration * 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ZoneKind:
+    """A kind of zone that a make has for itself: FANUC ``CNT``, KRL ``C_VEL``, Yaskawa ``PL``.
+
+    Args:
+        word: what the make calls it, for messages and texts.
+        reach: how far before the waypoint such a zone begins, from its size and the speed and
+            acceleration of the move that goes there: m, m/s and m/s² along moves of the TCP; shares
+            of the line, 1/s and 1/s² along joint moves. None: the size is that distance, m.
+        largest: greatest size.
+        unit: size of one unit in which it is written: 0.01 of percents, 0.001 of mm.
+        step: size that it is written in multiples of; 0 for any.
+
+    Raises:
+        InputError: a number makes no sense.
+    """
+
+    word: str
+    reach: ReachLaw | None = braking
+    largest: float = 1.0
+    unit: float = 0.01
+    step: float = 0.01
 
     def __post_init__(self) -> None:
-        _check("SpeedFraction", fraction=self.fraction)
-        if self.fraction > 1:
-            raise InputError(f"SpeedFraction.fraction is at most 1, not {self.fraction}")
+        _check("ZoneKind", largest=self.largest, unit=self.unit, step=self.step)
+        if self.unit == 0.0:
+            raise InputError("ZoneKind.unit must be above zero")
+
+    def sized(self, size: float) -> Zone:
+        """The zone of a size, no larger than there are any; `FINE` for none."""
+        return VendorZone(self, min(size, self.largest)) if size > 0.0 else FINE
+
+    def rounded(self, size: float) -> float:
+        """The greatest size not above another one that can be written."""
+        size = min(size, self.largest)
+        if self.step == 0.0:
+            return size
+        steps = math.floor(size / self.step * (1 + 1e-12) + 1e-9)
+        per_unit = self.step / self.unit
+        return round(steps * per_unit, 9) * self.unit if per_unit != 1.0 else steps * self.unit
 
 
-Zone = Fine | Radius | ContourFraction | Angle | SpeedFraction
+_SHARES_PER_M = 50.0
+
+
+@dataclass(frozen=True, slots=True)
+class VendorZone:
+    """A zone of a make's own kind.
+
+    Args:
+        kind: see `ZoneKind`; it stays through optimisation, as the words do.
+        size: in the kind's own terms: a share, m.
+        ratio: how far it goes on behind the waypoint, as a multiple of how far before it begins
+            (FANUC ``CR5,10``: 2).
+
+    Raises:
+        InputError: the size is beyond the kind's largest, or a number below zero.
+    """
+
+    kind: ZoneKind
+    size: float
+    ratio: float = 1.0
+
+    def __post_init__(self) -> None:
+        _check(self.kind.word, size=self.size, ratio=self.ratio)
+        if self.size > self.kind.largest:
+            most = self.kind.largest / self.kind.unit
+            raise InputError(
+                f"{self.kind.word} is at most {most:g}, not {self.size / self.kind.unit:g}"
+            )
+
+    def resized(self, tcp: float) -> Zone:
+        """The zone with about that radius, m.
+
+        How far a kind by speed reaches is not known before it is driven: a centimetre counts as
+        half of its largest size.
+        """
+        size = tcp if self.kind.reach is None else tcp * _SHARES_PER_M * self.kind.largest
+        return replace(self, size=min(size, self.kind.largest)) if size > 0.0 else FINE
+
+    def __str__(self) -> str:
+        behind = f",{self.size * self.ratio / self.kind.unit:.4g}" if self.ratio != 1.0 else ""
+        return f"{self.kind.word} {self.size / self.kind.unit:.4g}{behind}"
+
+
+Zone = Fine | Radius | ContourFraction | Angle | VendorZone
 FINE = Fine()
 
 
@@ -138,8 +224,15 @@ def zone_shown(zone: Zone) -> str:
     match zone:
         case Radius(tcp):
             return zone.name or f"{1e3 * tcp:.5g} mm"
-        case ContourFraction(fraction) | SpeedFraction(fraction):
+        case ContourFraction(fraction):
             return f"{100 * fraction:.3g} %"
+        case VendorZone():
+            return str(zone)
         case Angle(angle):
             return f"{math.degrees(angle):.4g}°"
     return "fine"
+
+
+def zone_word(zone: Zone) -> str:
+    """What a zone's kind is called, for messages that refuse it."""
+    return zone.kind.word if isinstance(zone, VendorZone) else type(zone).__name__

@@ -22,7 +22,7 @@ from ..motion.geometry.segments import JOINT_SEGMENT
 from ..motion.model.rules import Overlap
 from ..motion.path.path import OverlapError, Path, Route
 from ..program.program import Program
-from ..program.zone import FINE, Angle, ContourFraction, Radius, Zone
+from ..program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone, ZoneKind
 from ..robot.kinematics.chain_kernels import poses
 from .emulation import Party
 
@@ -166,6 +166,9 @@ def _first_guess(
     if corner.reach < _STILL and not joint:
         return _turning_zone(dialect, kinds, corner)
     for kind in kinds:
+        if isinstance(kind, ZoneKind):
+            same = isinstance(corner.zone, VendorZone) and corner.zone.kind == kind
+            return corner.zone if same else kind.sized(0.5 * kind.largest)
         if kind is Radius:
             return _radius(dialect, corner)
         if kind is ContourFraction and joint:
@@ -175,7 +178,9 @@ def _first_guess(
     return FINE
 
 
-def _turning_zone(dialect: Dialect, kinds: Sequence[type[Zone]], corner: EmulatedCorner) -> Zone:
+def _turning_zone(
+    dialect: Dialect, kinds: Sequence[type[Zone] | ZoneKind], corner: EmulatedCorner
+) -> Zone:
     """For corners at which the TCP stays and the tool turns on."""
     if dialect.zone_parts and Radius in kinds:
         return Radius(_NOMINAL, _NOMINAL, _NOMINAL, angle=corner.turn)
@@ -195,6 +200,8 @@ def _radius(dialect: Dialect, corner: EmulatedCorner) -> Radius:
 def _size(zone: Zone) -> float:
     if isinstance(zone, Radius):
         return zone.tcp
+    if isinstance(zone, VendorZone):
+        return zone.size
     return zone.angle if isinstance(zone, Angle) else getattr(zone, "fraction", 0.0)
 
 
@@ -211,6 +218,8 @@ def _resized(zone: Sized, size: float) -> Sized:
         return replace(zone, fraction=min(1.0, size))
     if isinstance(zone, Angle):
         return replace(zone, angle=min(size, math.pi))
+    if isinstance(zone, VendorZone):
+        return replace(zone, size=min(size, zone.kind.largest))
     return zone
 
 
@@ -239,6 +248,9 @@ def _within(zone: Zone, found: EmulatedCorner) -> Zone:
 
 
 def _rounded(zone: Zone) -> Zone:
+    if isinstance(zone, VendorZone):
+        size = zone.kind.rounded(zone.size)
+        return replace(zone, size=size) if size > 0.0 else FINE
     if not isinstance(zone, Radius):
         return zone
     parts = [round(value, _DIGITS) for value in (zone.tcp, zone.reorientation, zone.external)]

@@ -30,6 +30,7 @@ from .emulation import EmulatedProgram, Party
 from .frames import Frames
 from .half_turns import decided
 from .losses import Losses, LossesOfPart
+from .overrides import without_override
 from .pacing import Pacer
 from .rewording import Rewording
 from .signals import SignalMap
@@ -152,6 +153,8 @@ class _Translator:
         begin = self.source.start(drivable)
         route = self.source.route(drivable, begin)
         program = decided(drivable, route, losses)
+        if self.dialect is not None and "acceleration_override" not in self.dialect.joint.speeds:
+            program = without_override(program, self.source.model, losses)
         if program is not drivable:
             route = self.source.route(program, begin)
         path = self.source.path(route, program)

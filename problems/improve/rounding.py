@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.dialect import Dialect, Orientation
-from ...core.program.zone import FINE, Angle, ContourFraction, Radius, Zone
+from ...core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from ...core.spatial.pose import Pose, Quaternion, Vector3
 from ...core.spatial.rotation import (
     matrix_from_rotation_vector,
@@ -109,6 +109,9 @@ class Rounding:
         if isinstance(zone, Angle):
             angle = self._angle(_down, zone.angle, _PER_DEGREE_OF_ZONE)
             return FINE if angle < SMALLEST else Angle(angle)
+        if isinstance(zone, VendorZone):
+            size = zone.kind.rounded(zone.size)
+            return replace(zone, size=size) if size >= SMALLEST else FINE
         if not isinstance(zone, Radius):
             return zone
         if self.predefined:

@@ -16,7 +16,7 @@ from .report import Report, seconds
 from .shares import standing
 
 if TYPE_CHECKING:
-    from ...core.program.zone import Radius
+    from ...core.program.zone import Zone
 
 COLUMNS = (
     ("what holds the program back", "left"),
@@ -66,7 +66,7 @@ class _Account:
 
 
 def causes_of(
-    controller: Controller, driven: DrivenProgram, report: Report, zone: Radius
+    controller: Controller, driven: DrivenProgram, report: Report, zone: Zone
 ) -> tuple[TimeCause, ...]:
     """What the time of a run is lost to, what gives back most first.
 
@@ -123,8 +123,9 @@ def _rests(program: Program, report: Report) -> Iterator[TimeCause]:
         yield _cause(program, name, by_move, sum(by_move.values()))
 
 
-def _stops(controller: Controller, driven: DrivenProgram, zone: Radius) -> Iterator[TimeCause]:
+def _stops(controller: Controller, driven: DrivenProgram, zone: Zone) -> Iterator[TimeCause]:
     """Stops that are only programmed: what it would give back to pass them."""
+    from ...core.program.zone import zone_shown
     from ...problems.improve.zones.points import passable_stops
 
     gained, stops = 0.0, []
@@ -146,7 +147,7 @@ def _stops(controller: Controller, driven: DrivenProgram, zone: Radius) -> Itera
             continue
         stops += [part.first + index + 1 for index in passable]
     if stops and gained > 0.0:
-        name = f"stops, if passed in zones of {1e3 * zone.tcp:g} mm"
+        name = f"stops, if passed in zones of {zone_shown(zone)}"
         span = driven.program.moves[stops[0] - 1].statement
         yield TimeCause(name, None, gained, tuple(stops), span)
 

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from flyby.core.program.move import ArcOrientation, Move, MoveJ
 from flyby.core.program.speed import Speed
 from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, Zone
 from flyby.core.spatial.pose import IDENTITY
 from flyby.testing.checks.subject import Subject
 from flyby.testing.strategies import radii, tools, work_objects
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
 FLOATS = st.floats(0.01, 5.0)
 PERCENT = st.integers(1, 100).map(lambda percent: percent / 100)
@@ -67,7 +68,7 @@ class KukaWords(Subject):
         if kind is MoveJ:
             return self.zones(kind)
         angles = st.builds(Angle, st.floats(0.01, 1.0))
-        return self.zones(kind) | angles | st.builds(SpeedFraction, PERCENT)
+        return self.zones(kind) | angles | PERCENT.map(C_VEL.sized)
 
     def tools(self) -> st.SearchStrategy[Tool]:
         """``$TOOL`` is a frame; what the flange carries is one ``$LOAD``."""

@@ -20,6 +20,7 @@ from ...core.dialect import (
 from ...core.program.zone import Angle, ContourFraction, Radius
 from .settings_in_force import unsaid
 from .signals import SIGNALS
+from .values.zone_kinds import C_VEL
 
 _NAME = r"[^\W\d][\w$]*"
 _DECLARED = rf"{_NAME}(?:[ \t]*\[[^\]\r\n]*\])?"
@@ -138,7 +139,7 @@ _MOST = {
 that sets more stops with an error."""
 
 _PATH = MoveWords(
-    (Radius, Angle),
+    (Radius, Angle, C_VEL),
     frozenset({"tcp", "reorientation", "tcp_acceleration", "reorientation_acceleration"}),
     frozenset({"tcp"}),
 )

@@ -17,13 +17,33 @@ class Reach:
     value: float
     parts: tuple[Part, ...] = ()
 
-    def __mul__(self, other: Reach) -> Reach:
+    def __mul__(self, other: Reach | float) -> Reach:
+        if not isinstance(other, Reach):
+            return self.scaled(other)
         parts = [(n, i, p * other.value) for n, i, p in self.parts]
         parts += [(n, i, p * self.value) for n, i, p in other.parts]
         return Reach(self.value * other.value, tuple(parts))
 
-    def __add__(self, other: Reach) -> Reach:
+    __rmul__ = __mul__
+
+    def __add__(self, other: Reach | float) -> Reach:
+        if not isinstance(other, Reach):
+            return Reach(self.value + other, self.parts)
         return Reach(self.value + other.value, self.parts + other.parts)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Reach | float) -> Reach:
+        return self + other * -1.0
+
+    def __rsub__(self, other: float) -> Reach:
+        return self.scaled(-1.0) + other
+
+    def __truediv__(self, other: Reach | float) -> Reach:
+        return self * other.inverse() if isinstance(other, Reach) else self.scaled(1.0 / other)
+
+    def __rtruediv__(self, other: float) -> Reach:
+        return self.inverse().scaled(other)
 
     def mapped(self, value: float, slope: float) -> Reach:
         """A function of it, with that value and that derivative."""

@@ -50,6 +50,8 @@ class Ends:
         acceleration: (M,) m/s², programmed of the TCP along its path; inf where none is.
         joint_speed: (M,) rad/s, programmed of the leading joint of joint moves; inf where none is.
         joint_acceleration: (M,) rad/s², likewise.
+        joint_fraction, joint_acceleration_fraction: (M,), shares of the joints' own limits.
+        override: (M,), what accelerations are multiplied by that the program does not state.
     """
 
     kind: IntArray
@@ -65,6 +67,9 @@ class Ends:
     acceleration: FloatArray
     joint_speed: FloatArray
     joint_acceleration: FloatArray
+    joint_fraction: FloatArray
+    joint_acceleration_fraction: FloatArray
+    override: FloatArray
 
 
 @dataclass
@@ -80,6 +85,8 @@ class EndsGradient:
     acceleration: FloatArray
     joint_speed: FloatArray
     joint_acceleration: FloatArray
+    joint_fraction: FloatArray
+    joint_acceleration_fraction: FloatArray
 
     @classmethod
     def zeros(cls, ends: Ends) -> EndsGradient:
@@ -95,6 +102,8 @@ class EndsGradient:
             np.zeros_like(ends.acceleration),
             np.zeros_like(ends.joint_speed),
             np.zeros_like(ends.joint_acceleration),
+            np.zeros_like(ends.joint_fraction),
+            np.zeros_like(ends.joint_acceleration_fraction),
         )
 
 

@@ -113,5 +113,5 @@ def acceleration_along(segments: Segments, k: int, assumed: float | None) -> Rea
     """m/s² along segment k; inf where nothing bounds it."""
     own = float(segments.ends.acceleration[k])
     if math.isinf(own):
-        return Reach(math.inf if assumed is None else assumed)
+        return Reach(math.inf if assumed is None else assumed * float(segments.ends.override[k]))
     return Reach(own, (("acceleration", k, 1.0),))

@@ -14,7 +14,8 @@ import numpy as np
 
 from ...arrays import IntArray
 from ...errors import MotionError, Note
-from ...program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
+from ...program.zone import Angle, ContourFraction, Fine, Radius, VendorZone, Zone
+from ...robot.joint import JointLimits
 from ...robot.kinematics.chain import Chain
 from ..model.motion_model import MotionModel
 from ..model.rules import OrientationZone, Overlap, Pace, Space
@@ -44,6 +45,7 @@ class ZonePlanner:
         chains: the chain of each segment.
         model: the vendor's rules.
         moves: index in the program of the move of each segment, for messages.
+        limits: the robot's.
     """
 
     def __init__(
@@ -52,11 +54,13 @@ class ZonePlanner:
         chains: Sequence[Chain],
         model: MotionModel,
         moves: Sequence[int],
+        limits: JointLimits,
     ) -> None:
         self._segments = segments
         self._chains = chains
         self._model = model
         self._moves = moves
+        self._limits = limits
         self._notes: list[Note] = []
         self._kept: dict[int, Reach] = {}
         self._known_halves: dict[tuple[int, int], Reach | None] = {}
@@ -177,8 +181,8 @@ class ZonePlanner:
         """Reaches of position, turning and prescribed axes before the rules on overlap."""
         if isinstance(zone, Fine) or self._stops(i):
             return ((Reach(0.0), Reach(0.0)),) * 3
-        if isinstance(zone, SpeedFraction):
-            return (self._within(i, self._braking(i, zone.fraction), 0.0),) * 3
+        if isinstance(zone, VendorZone):
+            return (self._by_kind(i, zone),) * 3
         if isinstance(zone, ContourFraction):
             return (self._by_contour(i, zone.fraction),) * 3
         if isinstance(zone, Angle):
@@ -269,25 +273,80 @@ class ZonePlanner:
                 )
         return self._exit(i, i, size, angle), self._exit(i + 1, i, size, angle)
 
-    def _braking(self, i: int, fraction: float) -> Reach:
-        """How far before waypoint i, in m, braking towards it has come down to a share of the
-        programmed speed: (f v)² / 2 A."""
-        speed = float(self._segments.ends.speed[i])
-        if self._segments.ends.kind[i] == JOINT_SEGMENT or math.isinf(speed):
+    def _by_kind(self, i: int, zone: VendorZone) -> tuple[Reach, Reach]:
+        """Reaches of a make's own kind of zone: as far behind the waypoint as before it, along
+        joint moves as far as they come in the time that the braking takes."""
+        size, law = Reach(zone.size, (("tcp", i, 1.0),)), zone.kind.reach
+        joint = (self._segments.ends.kind[i : i + 2] == JOINT_SEGMENT).any()
+        if law is None or not joint:
+            way = size if law is None else law(size, *self._rates(i, i, zone))
+            told = law is None
+            before = self._within(i, way, 0.0, told)
+            return before[0], self._within(i, way * zone.ratio, 0.0)[1]
+        (v, a), (_, onwards) = (self._rates(k, i, zone) for k in (i, i + 1))
+        way = law(size, v, a)
+        return self._along(i, way), self._along(i + 1, way * onwards / a * zone.ratio)
+
+    def _along(self, segment: int, way: Reach) -> Reach:
+        """A way along a segment as a share of it: it is that already of a joint move."""
+        length = float(self._segments.length[segment])
+        if self._segments.ends.kind[segment] != JOINT_SEGMENT:
+            if length < STILL:
+                return Reach(0.0)
+            way = way / Reach(length, (("length", segment, 1.0),))
+        return least(way, Reach(self._furthest))
+
+    def _rates(self, segment: int, corner: int, zone: VendorZone) -> tuple[Reach, Reach]:
+        """Speed and acceleration of a segment: m/s and m/s², in shares of the line of a joint
+        move.
+
+        Raises:
+            MotionError: one of them is not bounded.
+        """
+        ends, word = self._segments.ends, zone.kind.word
+        if ends.kind[segment] == JOINT_SEGMENT:
+            return self._joint_rates(segment)
+        speed = float(ends.speed[segment])
+        if math.isinf(speed):
             raise MotionError(
-                "a zone by speed (C_VEL) needs a move of the TCP with a programmed speed; use a "
-                "distance (C_DIS)",
-                self._moves[i],
+                f"a zone by speed ({word}) needs a move of the TCP with a programmed speed; use a "
+                "distance",
+                self._moves[corner],
             )
-        a = acceleration_along(self._segments, i, self._model.tcp_acceleration)
+        a = acceleration_along(self._segments, segment, self._model.tcp_acceleration)
         if math.isinf(a.value):
             raise MotionError(
-                "a zone by speed (C_VEL) needs an acceleration to brake with: program one, or set "
-                "limit.tcp_acceleration in the motion model",
-                self._moves[i],
+                f"a zone by speed ({word}) needs an acceleration to brake with: program one, or "
+                "set limit.tcp_acceleration in the motion model",
+                self._moves[corner],
             )
-        v = Reach(fraction * speed, (("tcp", i, speed), ("speed", i, fraction)))
-        return v * v * a.scaled(2.0).inverse()
+        return Reach(speed, (("speed", segment, 1.0),)), a
+
+    def _joint_rates(self, k: int) -> tuple[Reach, Reach]:
+        """Of the joints that need longest for the line of a joint move."""
+        ends, limits = self._segments.ends, self._limits
+        step = self._segments.delta_q[k]
+        moving = np.abs(step) > STILL
+        if not moving.any():
+            return Reach(0.0), Reach(1.0)
+        scales = [self._model.acceleration_scale(j) for j in range(len(step))]
+        shares = "joint_fraction", "joint_acceleration_fraction"
+        own = limits.velocity, limits.acceleration * scales * ends.override[k]
+        programmed = "joint_speed", "joint_acceleration"
+        found = []
+        for share, most, stated in zip(shares, own, programmed, strict=True):
+            fraction, top = float(getattr(ends, share)[k]), float(getattr(ends, stated)[k])
+            allowed = np.minimum(fraction * most, top)
+            j = int(np.argmin(np.where(moving, allowed / np.maximum(np.abs(step), STILL), np.inf)))
+            axis = np.zeros(len(step))
+            axis[j] = math.copysign(1.0, step[j])
+            way = Reach(abs(float(step[j])), (("q1", k, axis), ("q0", k, -axis)))
+            by_share = fraction * float(most[j]) <= top
+            limit = Reach(
+                float(allowed[j]), ((share, k, float(most[j])) if by_share else (stated, k, 1.0),)
+            )
+            found.append(limit / way)
+        return found[0], found[1]
 
     def _half(self, segment: int, corner: int) -> Reach | None:
         key = segment, corner

@@ -53,7 +53,7 @@ class ProgramGradient:
         turn: (P, 3) per rad, small turns of pose targets about the axes of their work object.
         joints: (P, N) per rad or m, joint targets; external axes of all targets.
         via: (P, 3) per m, auxiliary points of arcs.
-        zone: (P,) per m, TCP radius of zones (per 1 of a `ContourFraction`).
+        zone: (P,) per m, TCP radius of zones (per 1 of a share).
         zone_reorientation, zone_external: (P,) per m, the other radii.
         zone_angle: (P,) per rad.
         speed: the numbers of `Speed`, (P,) each.
@@ -174,8 +174,14 @@ class Derivatives:
             np.add.at(getattr(zone, name), owners, getattr(route_bar.zones, name))
         speeds.tcp += route_bar.ends.speed
         speeds.tcp_acceleration += route_bar.ends.acceleration
-        speeds.joint += route_bar.ends.joint_speed
-        speeds.joint_acceleration += route_bar.ends.joint_acceleration
+        for name in (
+            "joint",
+            "joint_acceleration",
+            "joint_fraction",
+            "joint_acceleration_fraction",
+        ):
+            along = name if name != "joint" else "joint_speed"
+            getattr(speeds, name)[:] += getattr(route_bar.ends, along)
         by_move = SpeedGradient.zeros(count)
         for name in SpeedGradient.__dataclass_fields__:
             np.add.at(getattr(by_move, name), moves, getattr(speeds, name))

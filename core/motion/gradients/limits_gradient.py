@@ -52,7 +52,7 @@ def _pull_segment_limits(
 ) -> FloatArray:
     """Reverse of `SegmentLimits.of`: adds to the gradient of the speeds, returns that (M,) of
     `turning`."""
-    out.joint_acceleration_fraction += torque_bar
+    out.joint_acceleration_fraction += torque_bar * limits.override
     turning_bar = np.zeros(len(limits.turning))
     for bars, values, sources in (
         (velocity_bar, limits.velocity, limits.velocity_source),

@@ -177,6 +177,8 @@ def pull_corners(
         "acceleration": ends_bar.acceleration,
         "joint_speed": ends_bar.joint_speed,
         "joint_acceleration": ends_bar.joint_acceleration,
+        "joint_fraction": ends_bar.joint_fraction,
+        "joint_acceleration_fraction": ends_bar.joint_acceleration_fraction,
     }
     for i, blend in corners.timed.items():
         bars = timed_bar.duration[i], *timed_bar.blends[i]

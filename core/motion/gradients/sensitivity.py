@@ -26,6 +26,8 @@ from ..geometry.segments import JOINT_SEGMENT
 from ..model.blend import HERMITE
 from ..path.path import Path
 
+_HELD = {"joint_speed", "joint_acceleration", "joint_fraction", "joint_acceleration_fraction"}
+"""What a reach may depend on beside waypoints and sizes: it stays."""
 _GRID, _ZOOMS = 41, 3
 """Shares that are looked at, and how often more closely."""
 
@@ -55,7 +57,7 @@ class Directions:
 
     Args:
         waypoints: (M + 1, N, K), of the configurations at the waypoints.
-        radii: (M − 1, K), of the zones' TCP radii (shares for `ContourFraction`).
+        radii: (M − 1, K), of the zones' TCP radii (sizes of other kinds).
     """
 
     waypoints: FloatArray
@@ -135,7 +137,7 @@ def reach_tangent(reach: Reach, directions: Directions) -> FloatArray:
             total += part * directions.radii[index]
         elif name in ("q0", "q1"):
             total += np.asarray(part) @ directions.waypoints[index + int(name[1])]
-        elif name not in ("joint_speed", "joint_acceleration"):
+        elif name not in _HELD:
             raise ValueError(f"no tangent is known of {name}")
     return total
 

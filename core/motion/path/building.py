@@ -50,7 +50,7 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
         MotionError: a zone that cannot be emulated, or a stretch that the arm cannot follow.
     """
     segments = make_segments(route.ends)
-    planner = ZonePlanner(segments, route.chains, model, route.moves)
+    planner = ZonePlanner(segments, route.chains, model, route.moves, route.robot.limits)
     corners = planner.corners(route.zones)
     if corners.overlapping:
         raise OverlapError(route.moves[corners.overlapping[0]], corners.overlapping)

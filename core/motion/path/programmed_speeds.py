@@ -16,7 +16,7 @@ from .path import Route
 
 
 def programmed(speeds: Sequence[Speed]) -> dict[str, Any]:
-    """What `Ends` have of the speeds of M moves: (M,) each, inf where none is."""
+    """What `Ends` have of the speeds of M moves: (M,) each, inf where none is; shares."""
     # A time takes the place of the joints' speeds.
     joint = [Speed() if speed.duration is not None else speed for speed in speeds]
     return {
@@ -24,6 +24,9 @@ def programmed(speeds: Sequence[Speed]) -> dict[str, Any]:
         "acceleration": _or_inf([v.tcp_acceleration for v in speeds]),
         "joint_speed": _or_inf([v.joint for v in joint]),
         "joint_acceleration": _or_inf([v.joint_acceleration for v in joint]),
+        "joint_fraction": np.array([v.joint_fraction for v in speeds]),
+        "joint_acceleration_fraction": np.array([v.joint_acceleration_fraction for v in speeds]),
+        "override": np.array([v.acceleration_override for v in speeds]),
     }
 
 

@@ -49,6 +49,7 @@ class SegmentLimits:
         velocity: (M, N + 2), of the joints, the TCP (m/s) and the tool (rad/s); may be inf.
         acceleration: (M, N + 2), likewise.
         torque: (M,), the share of the torques' limits that may be used.
+        override: (M,), what of it the override of accelerations makes.
         centripetal: greatest centripetal acceleration of the TCP, in limits of that along the path.
         turning: (M,), what share of its turn a segment's limits of turning count; see `swivel`.
         velocity_source, acceleration_source: (M, N + 2), name of the speed's number behind each
@@ -60,6 +61,7 @@ class SegmentLimits:
     velocity: FloatArray
     acceleration: FloatArray
     torque: FloatArray
+    override: FloatArray
     centripetal: float
     turning: FloatArray
     velocity_source: tuple[tuple[tuple[str, float] | None, ...], ...]
@@ -84,7 +86,8 @@ class SegmentLimits:
         return cls(
             velocity,
             acceleration,
-            np.array([speed.joint_acceleration_fraction for speed in speeds]),
+            segments.ends.override * [speed.joint_acceleration_fraction for speed in speeds],
+            segments.ends.override,
             math.inf if model.centripetal is None else model.centripetal,
             turning,
             tuple(tuple(source for _, source in limits) for limits, _ in made),
@@ -133,7 +136,7 @@ def _limits(
         else:
             limits.append(_given(speed.external_angular, "external_angular"))
         velocity.append(_least(*limits))
-        most = joint.acceleration
+        most = joint.acceleration * speed.acceleration_override
         if index < robot.arm_size:
             most *= model.acceleration_scale(index)
         own = speed.joint_acceleration_fraction * most
@@ -151,10 +154,10 @@ def _limits(
         return velocity, [*acceleration, (math.inf, None), (math.inf, None)]
     tcp = _given(speed.tcp_acceleration, "tcp_acceleration")
     if speed.tcp_acceleration is None and model.tcp_acceleration is not None:
-        tcp = (model.tcp_acceleration, None)
+        tcp = (model.tcp_acceleration * speed.acceleration_override, None)
     turn = _given(speed.reorientation_acceleration, "reorientation_acceleration")
     if speed.reorientation_acceleration is None and model.reorientation_acceleration is not None:
-        turn = (model.reorientation_acceleration, None)
+        turn = (model.reorientation_acceleration * speed.acceleration_override, None)
     return velocity, [*acceleration, tcp, turn]
 
 

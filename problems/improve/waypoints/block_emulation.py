@@ -337,7 +337,7 @@ def _counts(path: Path, density: int) -> IntArray:
 def rooms_of(path: Path) -> tuple[Room, ...]:
     """What room the vendor's rules leave between neighbouring zones of a path."""
     route = path.route
-    planner = ZonePlanner(path.segments, route.chains, path.model, route.moves)
+    planner = ZonePlanner(path.segments, route.chains, path.model, route.moves, route.robot.limits)
     return tuple(planner.rooms(route.zones))
 
 

@@ -16,7 +16,7 @@ from ....core.program.move import Move, MoveC
 from ....core.program.origin import Origin, Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget
-from ....core.program.zone import ContourFraction, Fine, Radius
+from ....core.program.zone import ContourFraction, Fine, Radius, VendorZone
 from ....core.robot.model import Robot
 from .options import Freedom, WaypointTask
 from .oriented import stays_oriented
@@ -116,7 +116,7 @@ def _why_untouched(i: int, after: int, process: dict[int, str]) -> str | None:
 
 
 def _sizable(move: Move) -> bool:
-    return isinstance(move.zone, Radius | ContourFraction)
+    return isinstance(move.zone, Radius | ContourFraction | VendorZone)
 
 
 def _why_fixed(moves: Sequence[Move], i: int, after: int, task: WaypointTask) -> str | None:

@@ -11,7 +11,7 @@ from enum import StrEnum
 from ....core.errors import InputError
 from ....core.motion.geometry.pieces import Sampling
 from ....core.program.target import JointTarget
-from ....core.program.zone import Radius
+from ....core.program.zone import Radius, VendorZone
 from ....core.robot.model import Robot
 from ..rounding import Rounding
 from ..zones.sizes import GRADED
@@ -79,7 +79,7 @@ class WaypointTask:
     tilt: float = 0.0
     clearance: float | None = None
     freed: Collection[int] = ()
-    pattern: Radius = GRADED
+    pattern: Radius | VendorZone = GRADED
     vias: ViaCount = ViaCount.KEEP
     residual: float = 0.0
     rounding: Rounding = _ROUNDING

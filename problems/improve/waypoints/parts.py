@@ -18,7 +18,7 @@ from ....core.motion.geometry.segments import left_jacobian
 from ....core.motion.gradients.derivatives import ProgramGradient
 from ....core.program.move import Move
 from ....core.program.target import JointTarget, PoseTarget
-from ....core.program.zone import ContourFraction, Radius
+from ....core.program.zone import ContourFraction, Radius, VendorZone
 from ....core.spatial.pose import Pose
 from ....core.spatial.rotation import matrix_from_rotation_vector, quaternion_from_matrix
 from ..rounding import Rounding
@@ -244,25 +244,36 @@ class ZoneRadius(ZonePart):
 
 @dataclass(frozen=True)
 class ZoneShare(ZonePart):
-    """The share of the contour that a KRL zone takes.
+    """The share of the contour, or the size of a make's own kind, that a zone takes.
 
     Args:
         zone: as it was given.
     """
 
-    zone: ContourFraction
+    zone: ContourFraction | VendorZone
 
     def values(self) -> FloatArray:
-        return np.array([self.zone.fraction or LEAST_SHARE])
+        return np.array([self._size or LEAST_SHARE])
+
+    @property
+    def _size(self) -> float:
+        return self.zone.size if isinstance(self.zone, VendorZone) else self.zone.fraction
+
+    @property
+    def _largest(self) -> float:
+        return self.zone.kind.largest if isinstance(self.zone, VendorZone) else 1.0
 
     def bounds(self) -> tuple[FloatArray, FloatArray]:
-        return np.minimum(self.values(), LEAST_SHARE), np.array([1.0])
+        return np.minimum(self.values(), LEAST_SHARE), np.array([self._largest])
 
     def scale(self) -> FloatArray:
         return np.array([SHARE_STEP])
 
     def applied(self, move: Move, values: FloatArray) -> Move:
-        return replace(move, zone=ContourFraction(float(np.clip(values[0], 0.0, 1.0))))
+        size = float(np.clip(values[0], 0.0, self._largest))
+        if isinstance(self.zone, VendorZone):
+            return replace(move, zone=replace(self.zone, size=size))
+        return replace(move, zone=ContourFraction(size))
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
         return np.array([made.zone[list(self.moves)].sum()])

@@ -14,7 +14,7 @@ from ....core.motion.gradients.derivatives import ProgramGradient
 from ....core.program.move import Move
 from ....core.program.program import Program
 from ....core.program.target import JointTarget
-from ....core.program.zone import ContourFraction, Radius
+from ....core.program.zone import ContourFraction, Radius, VendorZone
 from ....core.robot.model import Robot
 from ..rounding import Rounding
 from .changeable import Selection
@@ -113,7 +113,7 @@ def make_variables(
     parts: list[ProgramPart] = [_point(program, robot, group, task) for group in selection.points]
     for group in selection.zones:
         zone = program.moves[group[0]].zone
-        if isinstance(zone, ContourFraction):
+        if isinstance(zone, ContourFraction | VendorZone):
             parts.append(ZoneShare(group, zone))
         elif isinstance(zone, Radius):
             parts.append(ZoneRadius(group, zone))

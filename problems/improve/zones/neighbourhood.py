@@ -137,7 +137,7 @@ class Neighbourhoods:
             return np.zeros(0, dtype=np.int64)
         route = self._chained(trials)
         segments = make_segments(route.ends)
-        planner = ZonePlanner(segments, route.chains, self._model, route.moves)
+        planner = ZonePlanner(segments, route.chains, self._model, route.moves, route.robot.limits)
         return planner.corners(route.zones).kind[::2]
 
     def _within_ranges(self, path: CornerPath, trial: tuple[int, Zone]) -> CornerPath | MotionError:

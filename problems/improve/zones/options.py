@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ....core.errors import InputError
 from ....core.program.target import JointTarget
-from ....core.program.zone import Radius
+from ....core.program.zone import Radius, VendorZone
 from ..rounding import Rounding
 from .search import TOLERANCE
 from .sizes import GRADED
@@ -39,7 +39,7 @@ class ZoneTask:
     clearance: float | None = None
     residual: float = 0.0
     freed: Collection[int] = ()
-    pattern: Radius = GRADED
+    pattern: Radius | VendorZone = GRADED
     kept: Collection[int] = ()
     apart: bool = False
     rounding: Rounding = _ROUNDING

@@ -13,7 +13,7 @@ from ....core.program.move import Move, Opaque, Wait
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget
-from ....core.program.zone import FINE, Fine, SpeedFraction, Zone
+from ....core.program.zone import FINE, Fine, Zone
 from ..rounding import SMALLEST
 from .sizes import Growth, size_of
 
@@ -39,9 +39,6 @@ class Points:
     growths: Mapping[int, Growth]
     groups: tuple[tuple[int, ...], ...]
     notes: tuple[Note, ...]
-
-
-_BY_SPEED = "it is given by speed (C_VEL), as large as braking takes; state a distance to change it"
 
 
 def find_points(
@@ -74,9 +71,7 @@ def find_points(
     for i, move in enumerate(moves):
         if i in kept or (move.zone == FINE and i not in freed):
             continue
-        if isinstance(move.zone, SpeedFraction):
-            notes.append(_note(moves, i, _BY_SPEED))
-        elif size_of(freed.get(i, move.zone)) == 0:
+        if size_of(freed.get(i, move.zone)) == 0:
             continue
         elif i in skipped:
             notes.append(_note(moves, i, skipped[i]))

@@ -18,7 +18,7 @@ from ....core.motion.geometry.zones import ZonePlanner
 from ....core.motion.model.motion_model import MotionModel
 from ....core.motion.model.rules import Overlap
 from ....core.motion.path.path import Route
-from ....core.program.zone import ContourFraction, Radius, Zone
+from ....core.program.zone import Angle, ContourFraction, VendorZone, Zone
 from .neighbourhood import Neighbourhoods
 from .sizes import Growth
 
@@ -41,7 +41,9 @@ class Rules:
     def __init__(self, route: Route, model: MotionModel) -> None:
         self._zones = route.zones
         self._segments = make_segments(route.ends)
-        self._planner = ZonePlanner(self._segments, route.chains, model, route.moves)
+        self._planner = ZonePlanner(
+            self._segments, route.chains, model, route.moves, route.robot.limits
+        )
         self._half = model.neighbour_fraction
         self.shared_legs = model.overlap is not Overlap.HALF
 
@@ -49,10 +51,14 @@ class Rules:
         """The largest size of the zone at a corner if its neighbours have none; 0 for no zone."""
         if isinstance(growth.pattern, ContourFraction):
             return 1.0
+        if isinstance(growth.pattern, VendorZone) and growth.pattern.kind.reach is not None:
+            return growth.pattern.kind.largest
         turn = self._half * float(self._segments.turn[corner : corner + 2].max())
-        if not isinstance(growth.pattern, Radius):
+        if isinstance(growth.pattern, Angle):
             return turn
         radius = self._planner.widest(corner, APART)
+        if isinstance(growth.pattern, VendorZone):
+            return min(radius or 0.0, growth.pattern.kind.largest)
         if radius is not None:
             return radius
         angle = growth.pattern.angle / growth.pattern.tcp

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ....core.dialect import Dialect
 from ....core.errors import InputError
-from ....core.program.zone import FINE, Angle, ContourFraction, Fine, Radius, Zone
+from ....core.program.zone import (
+    FINE,
+    Angle,
+    ContourFraction,
+    Fine,
+    Radius,
+    VendorZone,
+    Zone,
+    ZoneKind,
+)
 from ..rounding import Rounding
 
 GRADED = Radius(
@@ -21,8 +30,11 @@ GRADED = Radius(
 """Proportions of the zones that ABB predefines (z100: 100, 150, 150 mm, 15°, 150 mm, 15°)."""
 
 
-def pattern_for(dialect: Dialect | None) -> Radius:
+def pattern_for(dialect: Dialect | None) -> Radius | VendorZone:
     """Proportions of zones for points that had none, in a language; None: one that says all."""
+    own = [] if dialect is None else [k for k in dialect.line.zones if isinstance(k, ZoneKind)]
+    if dialect is not None and own and Radius not in dialect.line.zones:
+        return VendorZone(own[0], own[0].largest)
     if dialect is None or dialect.zone_parts:
         return GRADED
     return Radius(GRADED.tcp, GRADED.tcp, GRADED.tcp)
@@ -36,26 +48,28 @@ class Growth:
         pattern: a zone that is no stop.
 
     Raises:
-        InputError: it is one, or has no size, or its size is a share of speed.
+        InputError: it is one, or has no size.
     """
 
-    pattern: Radius | ContourFraction | Angle
+    pattern: Radius | ContourFraction | Angle | VendorZone
 
     @classmethod
     def of(cls, zone: Zone) -> Growth:
         """The growth that a programmed zone belongs to."""
-        if isinstance(zone, Radius | ContourFraction | Angle) and size_of(zone) > 0:
+        if isinstance(zone, Radius | ContourFraction | Angle | VendorZone) and size_of(zone) > 0:
             return cls(zone)
         raise InputError(f"a zone that can grow has a size above zero and is no stop, not {zone}")
 
     def zone(self, size: float) -> Zone:
-        """The zone of a size: m of the TCP's radius, share of the contour, or rad."""
+        """The zone of a size: m of the TCP's radius, share of the contour, rad, or of a kind."""
         if size <= 0:
             return FINE
         if isinstance(self.pattern, Radius):
             return self.pattern.resized(size)
         if isinstance(self.pattern, ContourFraction):
             return ContourFraction(min(1.0, size))
+        if isinstance(self.pattern, VendorZone):
+            return replace(self.pattern, size=min(self.pattern.kind.largest, size))
         return Angle(size)
 
     def rounded(self, size: float, rounding: Rounding) -> Zone:
@@ -64,11 +78,7 @@ class Growth:
 
 
 def size_of(zone: Zone) -> float:
-    """A zone's size; 0 for a stop.
-
-    Raises:
-        InputError: the zone is given by speed.
-    """
+    """A zone's size; 0 for a stop."""
     match zone:
         case Fine():
             return 0.0
@@ -78,4 +88,5 @@ def size_of(zone: Zone) -> float:
             return fraction
         case Angle(angle):
             return angle
-    raise InputError(f"{zone} depends on speeds, and has no size of its own; use a distance")
+        case VendorZone(_, size):
+            return size

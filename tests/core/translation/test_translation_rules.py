@@ -18,7 +18,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Fine, Radius, SpeedFraction
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Fine, Radius, VendorZone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint
 from flyby.core.robot.posture import posture
@@ -29,6 +29,7 @@ from flyby.core.translation.emulation import Party
 from flyby.core.translation.half_turns import decided
 from flyby.core.translation.losses import Losses
 from flyby.core.translation.translate import translate
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
 
 def side(name):
@@ -164,7 +165,7 @@ def test_angles_become_radii_that_cut_alike(between) -> None:
 @pytest.mark.parametrize("new", ["abb", "ur"])
 def test_zones_by_speed_are_cut_alike_or_told(between, new) -> None:
     pair = between("kuka", new)
-    program = corner(pair, SpeedFraction(0.5))
+    program = corner(pair, VendorZone(C_VEL, 0.5))
     made = pair.translate(program)
     before, after = (pair.corners(run)[1] for run in (pair.run_old(program), pair.run_new(made)))
     assert before.passed

@@ -15,7 +15,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from flyby.core.registry import find_robot
 from flyby.core.source.text.names import Names
 from flyby.core.source.write.options import OpaqueStyle
@@ -31,6 +31,7 @@ from flyby.vendors.abb.write.numbers import number
 from flyby.vendors.abb.write.operands import predefined_within
 from flyby.vendors.abb.write.options import RapidOptions, ZoneStyle
 from flyby.vendors.abb.write.writer import write
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
 OPTIONS = RapidOptions()
 DOWN = (0.0, 0.0, 1.0, 0.0)
@@ -309,7 +310,7 @@ def test_predefined_zones_are_the_largest_within(radius: float) -> None:
 REFUSED = [
     (MoveL(at(0, 0, 0), V500, Angle(0.1)), "no zone by Angle"),
     (MoveL(at(0, 0, 0), V500, ContourFraction(0.5)), "no zone by ContourFraction"),
-    (MoveL(at(0, 0, 0), V500, SpeedFraction(0.5)), "no zone by SpeedFraction"),
+    (MoveL(at(0, 0, 0), V500, VendorZone(C_VEL, 0.5)), "no zone by C_VEL"),
     (MoveJ(at(0, 0, 0), Speed(joint=1.0)), "a joint speed in rad/s"),
     (MoveJ(at(0, 0, 0), Speed(joint_acceleration=1.0)), "a joint acceleration"),
     (MoveJ(at(0, 0, 0), Speed(reorientation_acceleration=1.0)), "acceleration of reorientation"),

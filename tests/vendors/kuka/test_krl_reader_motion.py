@@ -17,13 +17,14 @@ from flyby.core.program.event import EventAnchor
 from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone
 from flyby.core.registry import find_robot
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.vendors.kuka.motion.arcs import beyond
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.kuka.values.angles import quaternion
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
 SET = """$VEL_AXIS[1]=50
 FOR i=1 TO 6
@@ -92,7 +93,7 @@ def test_lin_has_no_configuration_and_its_own_speeds(krl):
     ("words", "zone"),
     [
         ("LIN XP1 C_ORI", Angle(math.radians(6))),
-        ("LIN XP1 C_VEL", SpeedFraction(0.3)),
+        ("LIN XP1 C_VEL", VendorZone(C_VEL, 0.3)),
         ("LIN XP1 C_DIS C_DIS", Radius(0.0125, 0.0125, 0.0125)),
         ("SLIN XP1 C_SPL", Radius(0.0125, 0.0125, 0.0125)),
         ("PTP XP1 C_PTP C_DIS", ContourFraction(0.4)),

@@ -17,7 +17,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from flyby.core.registry import find_vendor
 from flyby.core.source.text.names import Names
 from flyby.core.spatial.pose import Pose
@@ -26,6 +26,7 @@ from flyby.vendors.abb.motion.configuration import AbbConfiguration
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.kuka.syntax.names import MAX_NAME, NAME_RULES
 from flyby.vendors.kuka.values.angles import angles, quaternion, written_angles
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 from flyby.vendors.kuka.write.numbers import number
 from flyby.vendors.kuka.write.writer import write
 
@@ -85,7 +86,7 @@ GOLDEN = program(
     MoveC(
         at(1500, 100, 1200),
         SLOW,
-        SpeedFraction(0.4),
+        VendorZone(C_VEL, 0.4),
         via=at(1450, 80, 1200),
         orientation=ArcOrientation.FIXED_FRAME,
         events=(
@@ -342,7 +343,7 @@ REFUSED: list[tuple[Move, str]] = [
     (MoveL(HOME, SLOW), "take a position, not axis values"),
     (MoveL(at(0, 0, 0), SLOW, ContourFraction(0.5)), "not by ContourFraction"),
     (MoveJ(HOME, HALF, Angle(0.1)), "not by Angle"),
-    (MoveJ(HOME, HALF, SpeedFraction(0.1)), "not by SpeedFraction"),
+    (MoveJ(HOME, HALF, VendorZone(C_VEL, 0.1)), "not by C_VEL"),
     (MoveL(at(0, 0, 0), SLOW, Radius(0.01, 0.02)), "Radius.reorientation"),
     (MoveL(at(0, 0, 0), SLOW, Radius(0.01, external=0.02)), "Radius.external"),
     (MoveL(at(0, 0, 0), SLOW, Radius(0.01, angle=0.1)), "Radius.angle"),

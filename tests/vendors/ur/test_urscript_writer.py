@@ -16,12 +16,13 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone
 from flyby.core.registry import find_vendor
 from flyby.core.robot.inertia import carried_inertia
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.source.text.names import Names
 from flyby.core.spatial.pose import Pose
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 from flyby.vendors.ur.motion.configuration import UrConfiguration
 from flyby.vendors.ur.syntax.names import NAME_RULES, RESERVED
 from flyby.vendors.ur.write.formatting import number
@@ -314,7 +315,7 @@ VIA = at(0.45, 0.1, 0.2)
 REFUSED = [
     (MoveL(POSE, LINEAR, Angle(0.1)), "no zone by Angle"),
     (MoveL(POSE, LINEAR, ContourFraction(0.5)), "no zone by ContourFraction"),
-    (MoveL(POSE, LINEAR, SpeedFraction(0.5)), "no zone by SpeedFraction"),
+    (MoveL(POSE, LINEAR, VendorZone(C_VEL, 0.5)), "no zone by C_VEL"),
     (MoveL(POSE, LINEAR, Radius(0.0)), "a blend radius of 0 is a stop point"),
     (MoveL(POSE, LINEAR, Radius(0.01, 0.02)), "Radius.reorientation is 0.02 m"),
     (MoveL(POSE, LINEAR, Radius(0.01, 0.01, 0.02)), "Radius.external is 0.02 m"),

@@ -147,6 +147,11 @@ def _circle(move: Move) -> str:
 
 def _acceleration(move: Move) -> str:
     """``AccSet Acc, Ramp`` in percent."""
+    if move.speed.acceleration_override != 1.0:
+        raise InputError(
+            "RAPID has no words for an override of all accelerations "
+            "(Speed.acceleration_override): give Speed.joint_acceleration_fraction"
+        )
     shares = (move.speed.joint_acceleration_fraction, move.speed.jerk_fraction)
     for share, least, what in zip(shares, LEAST_SHARES, ("acceleration", "jerk"), strict=True):
         if share < least:

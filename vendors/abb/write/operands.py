@@ -13,7 +13,7 @@ from ....core.errors import InputError
 from ....core.program.speed import Speed
 from ....core.program.target import Configuration, JointTarget, PoseTarget
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
-from ....core.program.zone import Fine, Radius, Zone
+from ....core.program.zone import Fine, Radius, Zone, zone_word
 from ....core.source.write.declarations import NewDatum
 from ..motion.configuration import AbbConfiguration
 from ..values.predefined import NAMES, SPEEDS, ZONES
@@ -81,7 +81,7 @@ class Operands:
         """A zonedata: as for speeds, or the predefined one that fits in."""
         if not isinstance(zone, Fine | Radius):
             raise InputError(
-                f"RAPID has no zone by {type(zone).__name__}: give it a radius (TCP distance)"
+                f"RAPID has no zone by {zone_word(zone)}: give it a radius (TCP distance)"
             )
         if self._options.zones is ZoneStyle.PREDEFINED:
             return predefined_within(zone)

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
 from ....core.program.speed import Speed
-from ....core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction, Zone
+from ....core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from ..values.predefined import AXES
 from ..values.provenance import Sources
 from ..values.scope import Variable
@@ -34,6 +34,7 @@ from ..values.values import (
     left_open,
     supposed,
 )
+from ..values.zone_kinds import C_VEL
 
 Note = Callable[[str, str, Span], None]
 _FULL = 100.0
@@ -310,7 +311,7 @@ class Settings:
         elif kind == "cori":
             zone = Angle(math.radians(number))
         elif kind == "cvel":
-            zone = SpeedFraction(number / 100)
+            zone = VendorZone(C_VEL, number / 100)
         else:
             zone = ContourFraction(number / 100)
         return Set(zone, Sources.each([value]))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ....core.errors import Span
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
-from ....core.program.zone import Angle, ContourFraction, Radius, SpeedFraction, Zone
+from ....core.program.zone import Angle, ContourFraction, Radius, VendorZone, Zone
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.source.patch.edits import TOLERANCE, alike
@@ -169,7 +169,9 @@ def _size(zone: Zone) -> tuple[float, float]:
         return zone.tcp, 1 / MM
     if isinstance(zone, Angle):
         return zone.angle, _DEGREES
-    return (zone.fraction if isinstance(zone, ContourFraction | SpeedFraction) else 0.0), 100.0
+    if isinstance(zone, VendorZone):
+        return zone.size, 100.0
+    return (zone.fraction if isinstance(zone, ContourFraction) else 0.0), 100.0
 
 
 def _same(old: float | None, new: float | None) -> bool:

@@ -12,9 +12,10 @@ from collections.abc import Iterator
 from ....core.errors import InputError
 from ....core.program.move import Move, MoveJ
 from ....core.program.speed import Speed
-from ....core.program.zone import Angle, ContourFraction, Fine, Radius, SpeedFraction, Zone
+from ....core.program.zone import Angle, ContourFraction, Fine, Radius, VendorZone, Zone, zone_word
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
+from ..values.zone_kinds import C_VEL
 from .formatting import MM
 from .numbers import number
 
@@ -47,8 +48,8 @@ def zone_settings(zone: Zone) -> Iterator[Setting]:
         yield "$APO.CPTP", f"$APO.CPTP={number(100 * zone.fraction)}"
     elif isinstance(zone, Angle):
         yield "$APO.CORI", f"$APO.CORI={number(math.degrees(zone.angle))}"
-    elif isinstance(zone, SpeedFraction):
-        yield "$APO.CVEL", f"$APO.CVEL={number(100 * zone.fraction)}"
+    elif isinstance(zone, VendorZone):
+        yield "$APO.CVEL", f"$APO.CVEL={number(100 * zone.size)}"
 
 
 def approximation(move: Move) -> str:
@@ -62,16 +63,17 @@ def approximation(move: Move) -> str:
         Radius: " C_DIS",
         ContourFraction: " C_PTP",
         Angle: " C_ORI",
-        SpeedFraction: " C_VEL",
+        VendorZone: " C_VEL",
     }
     takes: tuple[type[Zone], ...] = (Fine, Radius, ContourFraction)
     if not isinstance(move, MoveJ):
-        takes = (Fine, Radius, Angle, SpeedFraction)
-    if not isinstance(move.zone, takes):
+        takes = (Fine, Radius, Angle, VendorZone)
+    foreign = isinstance(move.zone, VendorZone) and move.zone != C_VEL.sized(move.zone.size)
+    if foreign or not isinstance(move.zone, takes):
         names = " or ".join(f"{kinds[kind].strip()} ({kind.__name__})" for kind in takes[1:])
         raise InputError(
             f"KRL's {'PTP' if isinstance(move, MoveJ) else 'LIN and CIRC'} is approximated by "
-            f"{names}, not by {type(move.zone).__name__}"
+            f"{names}, not by {zone_word(move.zone)}"
         )
     return kinds[type(move.zone)]
 
@@ -155,6 +157,11 @@ _FREE = Speed()
 
 
 def _refuse(speed: Speed, words: dict[str, str]) -> None:
+    if speed.acceleration_override != 1:
+        raise InputError(
+            "KRL has no words for an override of all accelerations (Speed.acceleration_override): "
+            "state a share of the joints' or the TCP's acceleration"
+        )
     if speed.jerk_fraction != 1:
         raise InputError("KRL has no words for a share of the jerk (Speed.jerk_fraction)")
     for field, what in words.items():

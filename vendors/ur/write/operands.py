@@ -10,7 +10,7 @@ from ....core.program.move import Move, MoveJ
 from ....core.program.speed import Speed
 from ....core.program.target import Configuration, JointTarget, PoseTarget
 from ....core.program.tool import WorkObject
-from ....core.program.zone import Fine, Radius, Zone
+from ....core.program.zone import Fine, Radius, Zone, zone_word
 from ....core.robot.model import Robot
 from ....core.spatial.pose import Pose
 from ..motion.configuration import UrConfiguration
@@ -106,7 +106,7 @@ def blend(zone: Zone) -> str:
         return ""
     if not isinstance(zone, Radius):
         raise InputError(
-            f"URScript has no zone by {type(zone).__name__}: give it a radius (TCP distance)"
+            f"URScript has no zone by {zone_word(zone)}: give it a radius (TCP distance)"
         )
     if zone.tcp == 0:
         raise InputError("a blend radius of 0 is a stop point in URScript: make the zone fine")
@@ -141,6 +141,11 @@ def check_speed(speed: Speed) -> None:
     for name, what in _NOWHERE.items():
         if getattr(speed, name) is not None:
             raise InputError(f"URScript has no words for {what} (Speed.{name}): take it away")
+    if speed.acceleration_override != 1.0:
+        raise InputError(
+            "URScript has no words for an override of all accelerations "
+            "(Speed.acceleration_override): state the accelerations"
+        )
     if speed.jerk_fraction != 1.0:
         raise InputError("URScript has no words for a share of the jerk (Speed.jerk_fraction)")
 

@@ -29,9 +29,10 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget
 from flyby.core.program.tool import Tool
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, SpeedFraction
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, ZoneKind
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import rotation_vector
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
 SPEED = Speed(tcp=0.2, reorientation=3.0)
 HALF, SHRINK, SKIP = (MotionModel(overlap=overlap) for overlap in Overlap)
@@ -142,12 +143,12 @@ def test_a_vendor_may_stop_between_a_move_and_a_pure_reorientation(abb) -> None:
 
 def test_a_zone_by_speed_beside_nothing_that_brakes_names_the_move(abb) -> None:
     moves = (
-        MoveJ(abb.target((1, 0, 0)), SPEED, SpeedFraction(0.5)),
+        MoveL(abb.target((1, 0, 0)), Speed(), VendorZone(C_VEL, 0.5)),
         MoveL(abb.target((1, 1, 0)), SPEED, FINE),
     )
     with pytest.raises(MotionError, match=r"move 1.*use a distance"):
         abb.controller().plan(Program(moves, start=abb.start))
-    moves = (MoveL(abb.target((1, 0, 0)), SPEED, SpeedFraction(0.5)), *moves[1:])
+    moves = (MoveL(abb.target((1, 0, 0)), SPEED, VendorZone(C_VEL, 0.5)), *moves[1:])
     with pytest.raises(MotionError, match=r"move 1.*limit.tcp_acceleration"):
         abb.controller(MotionModel()).plan(Program(moves, start=abb.start))
 
@@ -159,7 +160,7 @@ def test_a_zone_by_speed_begins_where_braking_has_come_down_to_it(abb) -> None:
     first, second = abb.target((1, 0, 0)), abb.target((1, 1, 0))
     blended, stopped = (
         Program((MoveL(first, speed, zone), MoveL(second, speed, FINE)), start=abb.start)
-        for zone in (SpeedFraction(share), FINE)
+        for zone in (VendorZone(C_VEL, share), FINE)
     )
     path = controller.plan(blended)
     before = float(path.corners.reach[0, POSITION, 0] * path.segments.length[0])
@@ -194,7 +195,7 @@ ZONES = [Radius(0.04, 0.06, 0.05, 0.1), ContourFraction(0.6), Angle(0.05), Radiu
 
 
 BRAKED = Speed(tcp=0.4, tcp_acceleration=2.5)
-OTHERS = [SpeedFraction(0.7), SpeedFraction(0.3), Angle(0.04), Angle(0.05)]
+OTHERS = [VendorZone(C_VEL, 0.7), VendorZone(C_VEL, 0.3), Angle(0.04), Angle(0.05)]
 
 
 @pytest.mark.parametrize("model", [HALF, SHRINK, OWN])
@@ -213,18 +214,22 @@ def test_the_reverse_of_zones_by_speed_and_by_orientation(abb, model) -> None:
     weights = np.random.default_rng(0).normal(size=(4, 3, 2))
 
     def total(zones) -> float:
-        planner = ZonePlanner(make_segments(ends), route.chains, model, route.moves)
+        planner = ZonePlanner(
+            make_segments(ends), route.chains, model, route.moves, route.robot.limits
+        )
         return float(np.sum(weights * planner.corners(zones).reach))
 
     segments = make_segments(ends)
-    corners = ZonePlanner(segments, route.chains, model, route.moves).corners(zones)
+    corners = ZonePlanner(segments, route.chains, model, route.moves, route.robot.limits).corners(
+        zones
+    )
     bar, out = SegmentsGradient.zeros(segments), EndsGradient.zeros(ends)
     by_zone = ZoneGradient.zeros(4)
     pull_corners(corners, weights, np.zeros(4), TimedGradient.zeros(0, 4), bar, out, by_zone)
     h = 1e-6
     for i, field, name in (
-        (0, "fraction", "tcp"),
-        (1, "fraction", "tcp"),
+        (0, "size", "tcp"),
+        (1, "size", "tcp"),
         (2, "angle", "angle"),
         (3, "angle", "angle"),
     ):
@@ -259,11 +264,15 @@ def test_the_reverse_of_shares_of_the_contour(abb, longer) -> None:
     ends, weights = route.ends, np.random.default_rng(0).normal(size=(1, 3, 2))
 
     def total(zone) -> float:
-        planner = ZonePlanner(make_segments(ends), route.chains, HALF, route.moves)
+        planner = ZonePlanner(
+            make_segments(ends), route.chains, HALF, route.moves, route.robot.limits
+        )
         return float(np.sum(weights * planner.corners([zone]).reach))
 
     segments = make_segments(ends)
-    corners = ZonePlanner(segments, route.chains, HALF, route.moves).corners([zone])
+    corners = ZonePlanner(segments, route.chains, HALF, route.moves, route.robot.limits).corners(
+        [zone]
+    )
     bar, out = SegmentsGradient.zeros(segments), EndsGradient.zeros(ends)
     by_zone = ZoneGradient.zeros(1)
     pull_corners(corners, weights, np.zeros(1), TimedGradient.zeros(0, 1), bar, out, by_zone)
@@ -306,7 +315,7 @@ def test_the_reverse_of_the_reaches_is_the_gradient(abb, model) -> None:
 
     def reaches(zones):
         segments = make_segments(ends)
-        planner = ZonePlanner(segments, route.chains, model, route.moves)
+        planner = ZonePlanner(segments, route.chains, model, route.moves, route.robot.limits)
         return segments, planner.corners(zones)
 
     def total(zones) -> float:
@@ -343,3 +352,99 @@ def test_the_reverse_of_the_reaches_is_the_gradient(abb, model) -> None:
             numeric = (above - below) / (2 * h)
             assert out.q[k][i] == pytest.approx(numeric, rel=1e-4, abs=1e-5)
     assert np.abs(out.q[4:]).max() > 0.01
+
+
+CNT = ZoneKind("CNT")
+SLOW = Speed(joint_fraction=0.3, joint_acceleration_fraction=0.5)
+
+
+def test_along_joint_moves_a_zone_by_speed_takes_the_time_of_the_braking(abb) -> None:
+    """Both moves' joints come as far from rest, or to it, in that time."""
+    way = np.array([0.6, -0.2, 0.3, 0.0, 0.1, 0.05])
+    q = np.array(abb.start.joints) + np.cumsum([way, way[::-1]], axis=0)
+    first, second = (JointTarget(tuple(one)) for one in q)
+    moves = (MoveJ(first, SLOW, VendorZone(CNT, 0.8)), MoveJ(second, SLOW))
+    path = abb.controller(HALF).plan(Program(moves, start=abb.start))
+    limits = abb.robot.limits
+    v = np.min(0.3 * limits.velocity[way != 0] / np.abs(way[way != 0]))
+    a, b = (
+        np.min(0.5 * limits.acceleration[step != 0] / np.abs(step[step != 0]))
+        for step in (way, way[::-1])
+    )
+    time = 0.8 * v / a
+    np.testing.assert_allclose(
+        path.corners.reach[0, POSITION], [0.5 * a * time**2, 0.5 * b * time**2]
+    )
+
+
+def test_two_distances_are_those_before_and_behind(abb) -> None:
+    kind = ZoneKind("CR", None, largest=1.0, unit=1e-3, step=1e-3)
+    moves = (
+        MoveL(abb.target((1, 0, 0)), SPEED, VendorZone(kind, 0.005, 2.0)),
+        MoveL(abb.target((1, 1, 0)), SPEED, FINE),
+    )
+    path = abb.controller(HALF).plan(Program(moves, start=abb.start))
+    ways = path.corners.reach[0, POSITION] * path.segments.length
+    np.testing.assert_allclose(ways, [0.005, 0.01])
+
+
+def test_the_reverse_of_zones_by_speed_along_joint_moves(abb) -> None:
+    """Over shares of speed and acceleration, sizes and joints; beside a line as well."""
+    way = np.array([0.6, -0.2, 0.3, 0.0, 0.1, 0.05])
+    q = np.array(abb.start.joints) + np.cumsum([way, way[::-1]], axis=0)
+    moves = (
+        MoveJ(JointTarget(tuple(q[0])), SLOW, VendorZone(CNT, 0.7)),
+        MoveJ(JointTarget(tuple(q[1])), SLOW, VendorZone(CNT, 0.4)),
+        MoveL(abb.target((1, 1, 0)), BRAKED),
+    )
+    route = abb.controller(HALF).plan(Program(moves, start=abb.start)).route
+    ends, zones = route.ends, list(route.zones)
+    weights = np.random.default_rng(0).normal(size=(2, 3, 2))
+
+    def total(zones) -> float:
+        segments = make_segments(ends)
+        planner = ZonePlanner(segments, route.chains, HALF, route.moves, route.robot.limits)
+        return float(np.sum(weights * planner.corners(zones).reach))
+
+    segments = make_segments(ends)
+    planner = ZonePlanner(segments, route.chains, HALF, route.moves, route.robot.limits)
+    bar, out = SegmentsGradient.zeros(segments), EndsGradient.zeros(ends)
+    by_zone = ZoneGradient.zeros(2)
+    timed = TimedGradient.zeros(0, 2)
+    pull_corners(planner.corners(zones), weights, np.zeros(2), timed, bar, out, by_zone)
+    for name in ("joint_fraction", "joint_acceleration_fraction"):
+        for row in (0, 1):
+            numeric = _slope(getattr(ends, name), row, lambda: total(zones))
+            assert getattr(out, name)[row] == pytest.approx(numeric, rel=1e-5), (name, row)
+    for i, zone in enumerate(zones):
+        above, below = (
+            total([*zones[:i], replace(zone, size=zone.size + h), *zones[i + 1 :]])
+            for h in (1e-6, -1e-6)
+        )
+        assert by_zone.tcp[i] == pytest.approx((above - below) / 2e-6, rel=1e-5)
+    for i in np.ndindex(2, 6):
+        numeric = _slope(ends.q[0], i, lambda: total(zones))
+        assert out.q[0][i] == pytest.approx(numeric, rel=1e-4, abs=1e-6)
+
+
+def test_an_override_of_accelerations_counts_for_joints_and_tcp(abb) -> None:
+    """ACC200 halves the way of braking, and the time of a move that only accelerates."""
+    model = MotionModel(tcp_acceleration=2.0)
+    found = []
+    for override in (1.0, 2.0):
+        speed = Speed(tcp=0.3, acceleration_override=override)
+        moves = (
+            MoveL(abb.target((1, 0, 0)), speed, VendorZone(CNT, 0.5)),
+            MoveL(abb.target((1, 1, 0)), speed),
+        )
+        path = abb.controller(model).plan(Program(moves, start=abb.start))
+        found.append(float(path.corners.reach[0, POSITION, 0]))
+    assert found[0] == pytest.approx(2 * found[1])
+    far = JointTarget(tuple(q + 0.05 for q in abb.start.joints))
+    times = [
+        abb.controller(MotionModel())
+        .run(Program((MoveJ(far, Speed(acceleration_override=o)),), start=abb.start))
+        .duration
+        for o in (1.0, 1.5)
+    ]
+    assert times[0] / times[1] == pytest.approx(np.sqrt(1.5), rel=1e-3)

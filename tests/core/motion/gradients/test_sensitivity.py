@@ -77,7 +77,9 @@ def everywhere(path: Path, each: int = 7) -> PathPlaces:
 
 
 def rooms(path: Path) -> list[Room]:
-    planner = ZonePlanner(path.segments, path.route.chains, path.model, path.route.moves)
+    planner = ZonePlanner(
+        path.segments, path.route.chains, path.model, path.route.moves, path.route.robot.limits
+    )
     return planner.rooms(path.route.zones)
 
 

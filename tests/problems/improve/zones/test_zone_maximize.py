@@ -36,6 +36,7 @@ from flyby.problems.improve.zones.repair import Repair
 from flyby.problems.improve.zones.sizes import GRADED, size_of
 from flyby.validation.scenes.scene import with_zone
 from flyby.validation.scenes.two_joints import two_joints
+from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
 SMALL = Radius(0.01, 0.015, 0.015)
 SCENE = two_joints()
@@ -330,13 +331,15 @@ END
 """
 
 
-def test_a_zone_by_speed_stays_as_it_is_beside_others_that_may_grow():
+def test_a_zone_by_speed_grows_by_its_share_and_keeps_its_kind():
     vendor, robot = find_vendor("kuka"), find_robot("kuka/kr30-3")
     program = vendor.read(BY_SPEED, "corners.src", robot=robot)
     points = find_points(Controller(vendor, robot), program, None, {}, (), False)
-    assert [points.move[corner] for corner in points.growths] == [2]
-    (note,) = (note for note in points.notes if note.move == 1)
-    assert "given by speed" in note.message
+    growth, _ = points.growths.values()
+    assert [points.move[corner] for corner in points.growths] == [1, 2]
+    assert growth.rounded(0.678, Rounding()) == C_VEL.sized(0.67)
+    assert growth.zone(3.0) == C_VEL.sized(1.0)
+    assert growth.zone(0.0) == FINE
 
 
 # Ways back
