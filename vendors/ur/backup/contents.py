@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -15,7 +16,7 @@ from ..urp.changes.code_files import COPY
 from ..urp.expressions import function_name
 from ..urp.file_names import INSTALLATION, POLYSCOPE_X, PROGRAM, SCRIPT
 from ..urp.installation import Installation, read_installation
-from ..urp.nodes import left_out, runs
+from ..urp.nodes import left_out, listed_nodes, runs
 from ..urp.polyscope_x import content_of, installation_in, script_in
 from ..urp.program import UrProgram, is_of_old_polyscope, urp_of
 from ..urp.source import installation_places
@@ -149,9 +150,19 @@ def _add_program(contents: Contents, name: str) -> None:
     entry = function_name(path.stem)
     lacks = left_out(root)
     if lacks:
-        told = ", ".join(f"{kind} ({count})" for kind, count in lacks.items())
-        contents.notes.append(Note(f"{name}: nodes of which nothing is carried out: {told}"))
+        contents.notes.append(Note(f"{name}: {_lacking(lacks, beside)}"))
     contents.programs.append(Found(name, tree, installation, _moves(tree), entry, beside))
+
+
+def _lacking(kinds: Counter[str], script: str | None) -> str:
+    """What becomes of nodes whose code a tree does not hold."""
+    told = listed_nodes(kinds)
+    if script is not None:
+        return f"nodes whose code is in {PurePosixPath(script).name} alone: {told}"
+    return (
+        f"nodes of which nothing is carried out: {told}; their code is in the .script that "
+        "PolyScope saves beside the program"
+    )
 
 
 def _add_script(contents: Contents, name: str, text: str, installation: str | None = None) -> None:

@@ -29,25 +29,25 @@ the closing bracket.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ....core.errors import Note, SourceError
+from ....core.errors import FlybyError, Note, SourceError
 from ....core.program.entry_point import entry_call
+from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
 from ....core.source.text.files import SourceFile
 from ..syntax.statements import parse
 from ..syntax.texts import Texts
+from ..urp.changes.tree_file import TreeFile
+from ..urp.script_in_place import script_of_nodes
 from ..urp.source import named_error, named_nodes, source_of, source_of_text
 from .analysis import ScriptTree
 from .entry import run_program
 from .interpreter import Interpreter
-
-if TYPE_CHECKING:
-    from ....core.program.program import Program
 
 
 def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
@@ -70,20 +70,57 @@ def read_file(path: str | Path, options: ReadOptions | None = None) -> Program:
     """The program of a file; `ReadOptions.others` are executed before it.
 
     A program's tree (``.urp``) is read as the script that PolyScope would make of it; spans count
-    the lines of that script, and messages name the node.
+    the lines of that script, and messages name the node. Where the tree holds no code of some
+    nodes, and the script that PolyScope saved with it drives something else, that is read.
 
     Raises:
         InputError: a file cannot be read, or is damaged.
         SourceError: see `read`.
     """
     options = options or ReadOptions()
-    files: dict[str, SourceFile] = {}
+    others: dict[str, SourceFile] = {}
     notes: list[Note] = []
-    for one in (*options.others, Path(path)):
+    for one in options.others:
         source, told = source_of(one, options.beside)
-        files[source.name] = source
+        others[source.name] = source
         notes += told
-    return _read_files(files, str(path), options, notes)
+    main, told = source_of(Path(path), options.beside)
+    script = script_of_nodes(main) if isinstance(main, TreeFile) else None
+
+    def of(source: SourceFile, more: Iterable[Note]) -> Program:
+        files = {**others, source.name: source}
+        return _read_files(files, source.name, options, (*notes, *more))
+
+    if script is None:
+        return of(main, told)
+    return _fuller(lambda: of(main, told), lambda: of(script.file, (script.note,)))
+
+
+def _fuller(read_tree: Callable[[], Program], read_script: Callable[[], Program]) -> Program:
+    """A program by its tree, if the script that was saved with it drives the same; else by that.
+
+    Raises:
+        SourceError: neither can be read; of the tree.
+    """
+    program: Program | None = None
+    failed: SourceError | None = None
+    try:
+        program = read_tree()
+    except SourceError as error:
+        failed = error
+    with suppress(FlybyError):
+        other = read_script()
+        if program is None or _drives_else(program, other):
+            return other
+    if program is None:
+        assert failed is not None
+        raise failed
+    return program
+
+
+def _drives_else(one: Program, other: Program) -> bool:
+    """Whether the moves are not as many, each of its kind; where to follows from the same state."""
+    return list(map(type, one.moves)) != list(map(type, other.moves))
 
 
 def _read_files(

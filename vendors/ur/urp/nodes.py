@@ -235,6 +235,11 @@ def left_out(root: Element) -> Counter[str]:
     return Counter(_kind(node) for node in root.iter("*") if _lacks(node) and runs(node))
 
 
+def listed_nodes(kinds: Counter[str]) -> str:
+    """Kinds of nodes with how many there are: ``Pallet (1), URCap Gripper (2)``."""
+    return ", ".join(f"{kind} ({count})" for kind, count in kinds.items())
+
+
 def runs(node: Element) -> bool:
     """Whether an element is in none that is suppressed, or of which nothing is carried out."""
     return not any(one.tag == "SuppressedNode" or _lacks(one) for one in node.iterancestors())
@@ -257,7 +262,10 @@ def _not_known(node: Element) -> str:
     count = sum(1 for _ in node.iter("Waypoint"))
     below = f" with the {count} waypoints below it" if count > 1 else ""
     below = " with the waypoint below it" if count == 1 else below
-    return f"a node of the kind '{node.tag}' is not known: it is left out{below}"
+    return (
+        f"a node of the kind '{node.tag}', whose code is not in the program tree but in the "
+        f".script that PolyScope saves beside it: it is left out{below}"
+    )
 
 
 def safe_home_node(out: Emission, node: Element) -> None:

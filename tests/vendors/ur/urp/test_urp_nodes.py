@@ -276,7 +276,7 @@ def test_what_is_not_carried_out_is_told_with_its_place(build: Build) -> None:
     for node, text in (
         ("Robot Program > Close", "whose code is not in the program tree"),
         ("Robot Program > Ev", "not carried out"),
-        ("Robot Program > F > S", "'Seek' is not known: it is left out with the waypoint below it"),
+        ("Robot Program > F > S", "'Seek', whose code is not in the program tree"),
         ("Robot Program", "timers are not followed"),
         ("Robot Program > Loop", "checked continuously"),
         ("Robot Program > MoveJ > W", "never taught"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,7 @@ from flyby.vendors.ur.urp.kinematics import DhTable
 from ..conftest import HOME, TCP, UR5E, Build
 
 A, B, C = (0.1, -1.4, 1.6, -1.8, -1.5, 0.2), (0.3, -1.2, 1.5, -1.9, -1.6, 0.1), HOME
+D = (0.2, -1.3, 1.5, -1.8, -1.5, 0.3)
 NAMES = "Waypoint_1", "Über 2", "3", "end", "p 'q'"
 
 
@@ -314,3 +316,75 @@ def test_a_script_of_another_state_is_told(build: Build, tmp_path: Path, as_back
         notes = [str(note) for note in flyby.read(path, robot=robot).notes]
         assert any("1 waypoint elsewhere in job.script (A)" in note for note in notes) == stale
         assert len(flyby.read(path, robot=robot).moves) == 2
+
+
+def pallet(build: Build, folder: Path, script: str | None, node: str = "Pallet") -> Path:
+    """A program with a node between two moves whose code the tree does not hold."""
+    build.packed(folder / "default.installation", build.installation())
+    inside = build.node(node, build.move(build.fixed("C", C)), name="P_1")
+    steps = build.move(build.fixed("A", A)), inside, build.move(build.fixed("B", B))
+    if script is not None:
+        (folder / "job.script").write_text(script)
+    return build.packed(folder / "job.urp", build.program(*steps))
+
+
+def saved(*between: str, of: tuple[float, ...] = A) -> str:
+    """What PolyScope saves with it."""
+    lines = [
+        f"global A_q={list(of)}",
+        f"global B_q={list(B)}",
+        "set_tcp(p[0,0,0.12,0,0,0])",
+        '$ 2 "A"',
+        "movej(A_q, a=1.4, v=1.05)",
+        '$ 4 "P_1"',
+        *between,
+        '$ 8 "B"',
+        "movej(B_q, a=1.4, v=1.05)",
+    ]
+    return "\n".join(["def job():", *(f"  {line}" for line in lines), "end", ""])
+
+
+@pytest.mark.parametrize("robot", [None, "ur/ur5e"])
+@pytest.mark.parametrize("node", ["Pallet", "Seek", "Gripper"])
+def test_nodes_whose_code_the_tree_lacks_are_driven_by_the_script(
+    build: Build, tmp_path: Path, robot: str | None, node: str
+) -> None:
+    path = pallet(build, tmp_path, saved(f"movej({list(C)})", f"movej({list(D)})"), node)
+    program = flyby.read(path, robot=robot)
+    assert len(program.moves) == 4
+    (note,) = [str(n) for n in program.notes if f"{path}: the code" in n.message]
+    assert f"nodes {node} (1) is in job.script alone, which is read" in note
+    assert flyby.emulate(program).trajectory.duration > 1.0
+
+
+def test_a_gripper_that_leaves_the_robot_alone_leaves_the_tree(
+    build: Build, tmp_path: Path
+) -> None:
+    path = pallet(build, tmp_path, saved("set_tool_digital_out(0, True)"), "Gripper")
+    program = flyby.read(path, robot="ur/ur5e")
+    assert len(program.moves) == 2 and program.moves[0].statement.file == str(path)
+
+
+@pytest.mark.parametrize(
+    "script", [None, saved(f"movej({list(C)})", of=D), "def job():\n movej([0,0,0,0,0,0])\nend\n"]
+)
+def test_a_script_of_another_state_is_not_read_for_them(
+    build: Build, tmp_path: Path, script: str | None
+) -> None:
+    path = pallet(build, tmp_path, script)
+    program = flyby.read(path, robot="ur/ur5e")
+    assert len(program.moves) == 2
+    assert any("'Pallet', whose code is not in the program tree" in str(n) for n in program.notes)
+
+
+def test_nothing_is_written_into_a_script_that_polyscope_makes_anew(
+    build: Build, tmp_path: Path
+) -> None:
+    path = pallet(build, tmp_path, saved(f"movej({list(C)})"))
+    program = flyby.read(path, robot="ur/ur5e")
+    slower = [replace(m, speed=replace(m.speed, joint=0.5)) for m in program.moves]
+    with pytest.raises(FlybyError, match=r"never loads it.*on the pendant"):
+        flyby.patch(program.with_moves(tuple(slower)), out=tmp_path / "out")
+    program = flyby.read(tmp_path / "job.script", robot="ur/ur5e")
+    flyby.patch(program.with_moves(tuple(slower)), out=tmp_path / "out")
+    assert (tmp_path / "out" / "job.script").read_text().count("v=0.5") == 3
