@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from .checks.catalogue import CatalogueChecks
 from .checks.emulation import EmulationChecks
+from .checks.golden import GoldenChecks
 from .checks.hostility import HostilityChecks
 from .checks.language import LanguageChecks
 from .checks.motion_model import MotionModelChecks
@@ -24,6 +25,7 @@ from .checks.recording import RecordingChecks
 class VendorConformance(
     CatalogueChecks,
     MotionModelChecks,
+    GoldenChecks,
     LanguageChecks,
     HostilityChecks,
     PatchingChecks,

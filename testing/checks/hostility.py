@@ -72,7 +72,7 @@ class HostilityChecks(Subject):
     def _encodings(self, sources: dict[str, str]) -> dict[str, dict[str, bytes]]:
         """The same program in other bytes, by what is peculiar about them."""
         found = {"CR LF": {f: t.replace("\n", "\r\n").encode() for f, t in sources.items()}}
-        if self.comment is None:
+        if self.comment_sign is None:
             return found
         for codec, words in (
             ("cp1252", b"Gr\xf6\xdfe \x80"),
@@ -80,7 +80,7 @@ class HostilityChecks(Subject):
             ("gbk", b"\x81\x8d\xb3\xcc"),
         ):
             mark = codecs.BOM_UTF8 if codec == "utf-8-sig" else b""
-            comment = self.comment.encode() + b" " + words + b"\n"
+            comment = self.comment_sign.encode() + b" " + words + b"\n"
             found[codec] = {f: mark + _after_first_line(t, comment) for f, t in sources.items()}
         return found
 

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from ...core.errors import FlybyError
 from ...core.program.program import Program
 from ...core.source.patch.edits import difference
-from .language import said
-from .subject import PROGRAM_EXAMPLES, Subject
+from .subject import PROGRAM_EXAMPLES, Subject, said
 
 
 class RecordingChecks(Subject):

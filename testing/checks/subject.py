@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import replace
+from functools import cache, cached_property
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -11,6 +12,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, find, settings
 from hypothesis import strategies as st
 
+from ...core.dialect import SignalWords
+from ...core.errors import FlybyError
 from ...core.language import Sources
 from ...core.program.move import ArcOrientation, Move
 from ...core.program.program import Program
@@ -21,8 +24,10 @@ from ...core.program.zone import Zone
 from ...core.registry import find_vendor
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
-from ...core.source.patch.edits import TOLERANCE
+from ...core.source.patch.edits import TOLERANCE, difference
+from ...core.source.write.approach import with_approach
 from ...core.vendor import Vendor
+from ..golden import Golden, GoldenRobot, GoldenText
 from ..strategies import (
     OfKind,
     Parts,
@@ -34,6 +39,7 @@ from ..strategies import (
     work_objects,
     zones,
 )
+from .telling import line_of, text_of, told
 
 EXAMPLES = settings(
     max_examples=25,
@@ -70,10 +76,12 @@ class Subject:
     """
 
     name: str
+    golden: str | Path | None = None
+    """TOML file of the golden texts (`flyby.testing.golden`)."""
+    comment: str | None = None
+    """What a line of comment begins with, if the language has comments and no `Dialect`."""
     precision = TOLERANCE
     """How near the language's numbers come back, as a share and in m, rad, s."""
-    comment: str | None = None
-    """What a line of comment begins with, if the language has comments."""
     periods: tuple[float, ...] = (0.024, 0.12)
     """s between samples of a log that the controllers take."""
 
@@ -81,6 +89,36 @@ class Subject:
     def vendor(self) -> Vendor:
         """The vendor."""
         return find_vendor(self.name)
+
+    @property
+    def comment_sign(self) -> str | None:
+        """What a line of comment begins with; None if that is not known."""
+        spoken = self.vendor.speaks
+        return self.comment if spoken is None else spoken.comment.strip()
+
+    @property
+    def signals(self) -> SignalWords | None:
+        """How statements on signals are understood."""
+        return None if self.vendor.speaks is None else self.vendor.speaks.signals
+
+    @cached_property
+    def _golden(self) -> Golden:
+        return Golden() if self.golden is None else Golden.read(self.golden)
+
+    @property
+    def golden_texts(self) -> tuple[GoldenText, ...]:
+        """Texts with what they mean by their author's knowledge."""
+        return self._golden.texts
+
+    @property
+    def golden_robots(self) -> tuple[GoldenRobot, ...]:
+        """Numbers of data sheets."""
+        return self._golden.robots
+
+    @property
+    def golden_none(self) -> frozenset[str]:
+        """What the language has no words for, by the golden texts' author."""
+        return self._golden.none
 
     def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         """Zones of a kind of move that the language can say and the robots drive."""
@@ -153,6 +191,56 @@ class Subject:
         )
         return robot, self.vendor.write(found, robot)
 
+    def read_golden(self, text: GoldenText) -> Program:
+        """A golden text as the plugin reads it."""
+        robot = None if text.robot is None else self.vendor.robot(text.robot)
+        with TemporaryDirectory() as folder:
+            for file, said in text.files.items():
+                (Path(folder) / file).write_text(said, "utf-8")
+            main = Path(folder) / next(iter(text.files))
+            return self.vendor.read_file(main, text.entry, robot)
+
+    def written(self, program: Program, robot: Robot) -> Sources:
+        """The program as texts; that they are refused when they are read again is a failure."""
+        try:
+            return self.vendor.write(program, robot)
+        except FlybyError as error:
+            shown = "\n".join(map(repr, program.statements))
+            look = "the writer: what it cannot say, `Dialect` should not speak of"
+            raise AssertionError(
+                told(f"{self.name}: not written: {error}", written=shown, look=look)
+            ) from error
+
+    def check_same(
+        self, program: Program, again: Program, sources: Sources, robot: Robot | None = None
+    ) -> None:
+        """Fail where what was written is read as another program."""
+        wanted = program if robot is None else said(program, self.vendor, robot, again)
+        found = difference(replace(wanted, start=None), again, self.precision)
+        if found is None:
+            return
+        index, part = found
+        if index < 0:
+            raise AssertionError(
+                told(
+                    f"{self.name}: what was written comes back otherwise: {part}",
+                    written="\n".join(map(repr, wanted.statements)),
+                    read="\n".join(map(repr, again.statements)),
+                    look="statements",
+                    lines=[text_of(sources)],
+                )
+            )
+        one, other = wanted.moves[index], again.moves[index]
+        name = part.replace(" ", "_")
+        raise AssertionError(
+            told(
+                f"{self.name}: move {index + 1} comes back with another {part}",
+                written=f"{one!r}: {getattr(one, name, '')}",
+                read=f"{other!r}: {getattr(other, name, '')}\nfrom {line_of(sources, other)}",
+                look=part,
+            )
+        )
+
     def driven_robots(self) -> list[str]:
         """Robots that the vendor's language drives."""
         return sorted(set(self.vendor.robots) - set(self.vendor.emulation_only))
@@ -180,3 +268,15 @@ class Subject:
             for file, data in sources.items():
                 (Path(folder) / file).write_bytes(data)
             return self.vendor.read_file(Path(folder) / main, robot=robot)
+
+
+def said(program: Program, vendor: Vendor, robot: Robot, again: Program) -> Program:
+    """What a language says of a program: it has no word for where the robot stands, so that its
+    first move is that to the start, at a speed that the program leaves to the language."""
+    approached = with_approach(program, vendor.speaks, robot)
+    moves = approached.moves
+    if len(moves) > len(program.moves) and again.moves:
+        approached = approached.with_moves(
+            (replace(moves[0], speed=again.moves[0].speed), *moves[1:])
+        )
+    return replace(approached, start=None)

@@ -54,6 +54,8 @@ ACME = discover().find_vendor("acme")
 class TestAcmeConformance(VendorConformance):
     name = "acme"
     vendor: Vendor = ACME  # type: ignore[assignment]
+    golden = Path(__file__).with_name("acme_golden.toml")
+    comment = ";"
 
     def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         return zones().map(lambda zone: Radius(zone.tcp) if isinstance(zone, Radius) else FINE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from hypothesis import strategies as st
@@ -16,6 +17,7 @@ from flyby.testing.checks.subject import Subject
 from flyby.testing.strategies import radii, tools, work_objects
 from flyby.vendors.kuka.values.zone_kinds import C_VEL
 
+HERE = Path(__file__).parent
 FLOATS = st.floats(0.01, 5.0)
 PERCENT = st.integers(1, 100).map(lambda percent: percent / 100)
 SPHERES = radii().map(lambda zone: Radius(zone.tcp))
@@ -26,7 +28,7 @@ class AbbWords(Subject):
 
     name = "abb"
     precision = 1.2e-7  # single precision
-    comment = "!"
+    golden = HERE / "abb" / "golden.toml"
 
     def said_speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
         """A speeddata states all four speeds; settings state the rest."""
@@ -54,7 +56,7 @@ class KukaWords(Subject):
     """KRL."""
 
     name = "kuka"
-    comment = ";"
+    golden = HERE / "kuka" / "golden.toml"
 
     def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         """``C_DIS`` for all, ``C_PTP`` for joint moves, ``C_ORI`` for the others."""
@@ -109,7 +111,7 @@ class UrWords(Subject):
     """URScript."""
 
     name = "ur"
-    comment = "#"
+    golden = HERE / "ur" / "golden.toml"
 
     def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         """Blend radii: position and orientation begin together."""
