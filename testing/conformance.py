@@ -20,14 +20,18 @@ from .checks.language import LanguageChecks
 from .checks.motion_model import MotionModelChecks
 from .checks.patching import PatchingChecks
 from .checks.recording import RecordingChecks
+from .checks.sources import SourceChecks
+from .checks.words import WordsChecks
 
 
 class VendorConformance(
     CatalogueChecks,
     MotionModelChecks,
     GoldenChecks,
+    WordsChecks,
     LanguageChecks,
     HostilityChecks,
+    SourceChecks,
     PatchingChecks,
     RecordingChecks,
     EmulationChecks,

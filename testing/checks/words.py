@@ -1,0 +1,327 @@
+"""Checks that a language's dialect is true: what it has words for is written and read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ...core.dialect import Dialect, MoveWords
+from ...core.program.event import Event
+from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Statement
+from ...core.program.program import Program
+from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
+from ...core.program.speed import Speed
+from ...core.program.target import PoseTarget
+from ...core.program.tool import WORLD, Tool, WorkObject
+from ...core.program.zone import FINE, Fine, Radius, Zone
+from ...core.robot.model import Robot
+from ...core.source.patch.edits import alike
+from ...core.spatial.pose import Pose
+from ..strategies import allowed, is_regular, joint_target
+from .golden import stated_speeds
+from .subject import Subject
+from .telling import line_of, text_of, told
+
+VALUES: Mapping[str, Any] = {
+    "tcp": 0.3,
+    "reorientation": 0.7,
+    "external_linear": 0.4,
+    "external_angular": 0.6,
+    "joint": 0.5,
+    "joint_fraction": 0.45,
+    "tcp_acceleration": 1.5,
+    "reorientation_acceleration": 2.0,
+    "joint_acceleration": 1.1,
+    "joint_acceleration_fraction": 0.55,
+    "jerk_fraction": 0.65,
+    "duration": 2.5,
+}
+"""Numbers of `Speed`, none of them a usual default."""
+_SQUARE = 0.5**0.5
+_FRAME = WorkObject("table", Pose((0.2, -0.1, 0.3), (_SQUARE, 0.0, 0.0, _SQUARE)))
+_TOOL = Tool("gun", Pose((0.01, 0.02, 0.1), (_SQUARE, 0.0, _SQUARE, 0.0)))
+_LOOK = "the writer and the reader, or Dialect: it speaks of a word that they do not have"
+
+
+@dataclass(frozen=True)
+class _Word:
+    """A word, the move that says it, and what must come back of the move."""
+
+    name: str
+    move: Move
+    of: Callable[[Move], Any]
+
+
+class WordsChecks(Subject):
+    """What the dialect says there are words for is written and read, and golden texts say no
+    more."""
+
+    def test_every_word_of_the_dialect_is_written_and_read(self) -> None:
+        self.need("reader", "writer")
+        for word in self._said_by_moves(self.dialect):
+            program = self._around(word.move)
+            sources = self.written(program, self._robot_of_words)
+            again = self.read_back(sources, self._robot_of_words)
+            assert len(again.moves) == len(program.moves), told(
+                f"{self.name}: {word.name} comes back as {len(again.moves)} moves",
+                written=text_of(sources),
+                look="statements",
+            )
+            wanted, found = word.of(word.move), word.of(again.moves[1])
+            assert alike(wanted, found, max(self.precision, 1e-6)), told(
+                f"{self.name}: {word.name} is in the dialect, and does not come back",
+                written=wanted,
+                read=f"{found}\nfrom {line_of(sources, again.moves[1])}",
+                look=_LOOK,
+            )
+
+    def test_events_are_written_and_read(self) -> None:
+        self.need("reader", "writer")
+        outputs, signals = self.dialect.outputs, self.signals
+        if outputs is None:
+            pytest.skip(f"{self.name} sets no outputs on the way of moves")
+        for on in (True, False):
+            name = self._signal_name(SetSignal("", on))
+            for event in _places(Event(outputs.switch(name, on))):
+                move = self._plain(MoveL)
+                if not outputs.takes(event, move):
+                    continue
+                program = self._around(replace(move, events=(event,)))
+                sources = self.written(program, self._robot_of_words)
+                again = self.read_back(sources, self._robot_of_words)
+                read = [e for m in again.moves for e in m.events]
+                assert alike([event], read, 1e-6) and again.moves[1].events, told(
+                    f"{self.name}: an event on the way does not come back",
+                    written=f"{event}\nin {text_of(sources)}",
+                    read=read,
+                    look="events",
+                )
+                if signals is not None:
+                    done = signals.read(signals.event(read[0].text))
+                    assert done == SetSignal(name, on), told(
+                        f"{self.name}: an event that switches {name} is understood otherwise",
+                        written=f"{read[0].text!r}: {SetSignal(name, on)}",
+                        read=done,
+                        look="OutputWords.switch, SignalWords.event and SignalWords.read",
+                    )
+
+    def test_signals_are_said_and_understood(self) -> None:
+        self.need("reader", "writer")
+        signals = self.signals
+        if signals is None:
+            pytest.skip(f"{self.name} does not say how signals are set")
+        for action in self._actions():
+            text = signals.said(action)
+            assert text is not None, f"{self.name} has no statement for {action}"
+            assert signals.read(text) == action, told(
+                f"{self.name}: a statement on signals is understood otherwise than it is said",
+                written=f"{action}: {text!r}",
+                read=signals.read(text),
+                look="SignalWords.said and SignalWords.read",
+            )
+            program = self._around(self._plain(MoveL), Opaque(text))
+            sources = self.written(program, self._robot_of_words)
+            again = self.read_back(sources, self._robot_of_words)
+            kept = [s.text for s in again.statements if isinstance(s, Opaque)]
+            assert [signals.read(one) for one in kept] == [action], told(
+                f"{self.name}: a kept statement on signals does not come back",
+                written=f"{text!r}\nin {text_of(sources)}",
+                read=kept,
+                look="statements",
+            )
+
+    def test_comments_say_nothing(self) -> None:
+        self.need("reader", "writer")
+        spoken = self.dialect
+        program = self._around(self._plain(MoveL))
+        sources = self.written(program, self._robot_of_words)
+        main = next(iter(sources))
+        lines = sources[main].splitlines(keepends=True)
+        motion = next(s.statement for s in self.read_back(sources).moves if s.statement)
+        words = f"{spoken.comment}{lines[motion.line - 1].strip()}\n"
+        lines.insert(motion.line - 1, words)
+        again = self.read_back({**sources, main: "".join(lines)}, self._robot_of_words)
+        self.check_same(self.read_back(sources, self._robot_of_words), again, sources)
+
+    def test_golden_texts_stay_within_the_dialect(self) -> None:
+        """What a text says, the dialect has words for: translations would not use them."""
+        spoken = self.dialect
+        for text in self.golden_texts:
+            for move in self.read_golden(text).moves:
+                for what in _beyond(spoken, move):
+                    raise AssertionError(
+                        told(
+                            f"{self.name}: the dialect has no words for {what}",
+                            read=line_of(text.files, move),
+                            look="Dialect and its MoveWords, or the unit that this is read with",
+                        )
+                    )
+
+    @property
+    def dialect(self) -> Dialect:
+        """What the language has words for; skips the check if it is not said."""
+        if self.vendor.speaks is None:
+            pytest.skip(f"{self.name} does not say what its language has words for")
+        return self.vendor.speaks
+
+    # ------------------------------------------------------------------ programs
+
+    @cached_property
+    def _robot_of_words(self) -> Robot:
+        return self.vendor.robot(self.driven_robots()[0])
+
+    @cached_property
+    def _stand(self) -> tuple[float, ...]:
+        """Joints away from limits and singular postures."""
+        robot = self._robot_of_words
+        lower, upper = robot.limits.lower, robot.limits.upper
+        shares = np.random.default_rng(1)
+        for _ in range(1000):
+            q = allowed(robot, lower + shares.uniform(0.35, 0.65, robot.size) * (upper - lower))
+            if is_regular(robot, q) and ((lower < q) & (q < upper)).all():
+                return tuple(float(value) for value in q)
+        raise AssertionError(f"{robot.name}: no regular posture near the middle of its ranges")
+
+    def _around(self, move: Move, *others: Statement) -> Program:
+        """A program of a move to a stop, the move, other statements, and a stop."""
+        first, last = self._plain(MoveJ), self._plain(MoveJ)
+        return Program((first, move, *others, last), "words")
+
+    def _plain(self, kind: type[Move]) -> Move:
+        """A stop with as few words as the language needs."""
+        robot, q = self._robot_of_words, np.array(self._stand)
+        needs = self.words_of(kind).needs
+        speed = Speed(**{name: VALUES[name] for name in needs})
+        if kind is MoveJ:
+            return MoveJ(joint_target(robot, q), speed, FINE)
+        home = robot.flange_pose(q)
+        external = tuple(float(value) for value in q[robot.arm_size :])
+        via, end = (_shifted(home, step) for step in ((0.01, 0.01), (0.02, 0.0)))
+        if kind is MoveL:
+            return MoveL(PoseTarget(end, None, external), speed, FINE)
+        through = PoseTarget(via, None, external)
+        # A tool that follows an arc rigidly would have to end turned.
+        rigid = self.dialect.rigid_arcs
+        turning = ArcOrientation.FIXED_FRAME if rigid else ArcOrientation.FOLLOWS_ARC
+        target = PoseTarget(end, None, external)
+        return MoveC(target, speed, FINE, via=through, orientation=turning)
+
+    def words_of(self, kind: type[Move]) -> MoveWords:
+        """What the dialect says of a kind of move."""
+        spoken = self.dialect
+        return {MoveJ: spoken.joint, MoveL: spoken.line, MoveC: spoken.arc}[kind]
+
+    def _said_by_moves(self, spoken: Dialect) -> Iterator[_Word]:
+        for kind in (MoveJ, MoveL, MoveC):
+            plain, words = self._plain(kind), self.words_of(kind)
+            called = f"of {kind.__name__}"
+            for zone in (FINE, *(a_zone(one) for one in words.zones)):
+                move = replace(plain, zone=zone)
+                yield _Word(f"zone {type(zone).__name__} {called}", move, _zone)
+            for name in sorted(words.speeds):
+                speed = replace(plain.speed, **{name: VALUES[name]})
+                move = replace(plain, speed=speed)
+                yield _Word(f"speed {name} {called}", move, _number(name))
+        line = self._plain(MoveL)
+        if spoken.zone_parts:
+            parts = Radius(0.01, 0.015, 0.02, 0.03, 0.025, 0.04)
+            yield _Word("zones with parts", replace(line, zone=parts), lambda move: move.zone)
+        if spoken.work_objects:
+            frame = _FRAME
+            if spoken.user_frames:
+                frame = replace(frame, frame=Pose((0.01, 0.02, 0.03)))
+            move = replace(line, work_object=frame)
+            yield _Word("a work object", move, lambda move: move.work_object.pose)
+        if spoken.user_frames:
+            yield _Word("a user frame", move, lambda move: move.work_object.user)
+        if "tool" not in self.golden_none:
+            move = replace(line, tool=_TOOL)
+            yield _Word("a tool", move, lambda move: move.tool.tcp)
+        if spoken.stationary_tools:
+            still = replace(_TOOL, robot_held=False)
+            held = replace(_FRAME if spoken.work_objects else WORLD, name="part", robot_held=True)
+            move = replace(line, tool=still, work_object=held)
+            yield _Word(
+                "a stationary tool",
+                move,
+                lambda move: (move.tool.robot_held, move.tool.tcp, move.work_object.robot_held),
+            )
+
+    # ------------------------------------------------------------------- signals
+
+    def _signal_name(self, action: SignalAction) -> str:
+        """What a signal may be called."""
+        if self.signals is None:
+            return "5"
+        shown = self.signals.example(action).replace("?", "5")
+        return self.signals.spelt(shown) or shown
+
+    def _actions(self) -> Iterator[SignalAction]:
+        for on in (True, False):
+            yield SetSignal(self._signal_name(SetSignal("", on)), on)
+            wait = WaitSignal(Level("", on))
+            yield WaitSignal(Level(self._signal_name(wait), on))
+
+
+def a_zone(kind: type[Zone]) -> Zone:
+    """A zone of a kind: of one that is a share 40 %, of one with a radius 13 mm."""
+    return Radius(0.013) if kind is Radius else kind(0.4)  # type: ignore[call-arg]
+
+
+def _zone(move: Move) -> Any:
+    """Kind and size of a zone; where it says one distance, that is all that is said."""
+    zone = move.zone
+    if isinstance(zone, Fine):
+        return "Fine"
+    return type(zone).__name__, [getattr(zone, zone.__slots__[0])]
+
+
+def _number(name: str) -> Callable[[Move], Any]:
+    return lambda move: getattr(move.speed, name)
+
+
+def _shifted(pose: Pose, step: tuple[float, float]) -> Pose:
+    x, y, z = pose.position
+    return replace(pose, position=(x, y + step[0], z + step[1]))
+
+
+def _places(event: Event) -> Iterator[Event]:
+    yield event
+    yield replace(event, distance=0.01)
+    yield replace(event, time=0.05)
+
+
+def _beyond(spoken: Dialect, move: Move) -> Iterator[str]:
+    """What a move says that the dialect has no words for."""
+    words, kind = spoken.words(move), type(move).__name__
+    if not isinstance(move.zone, (Fine, *words.zones)):
+        yield f"the zone {type(move.zone).__name__} of {kind}"
+    stated = set(stated_speeds(move))
+    for name in sorted(stated - words.speeds):
+        yield f"the speed {name} of {kind}"
+    if "duration" not in stated:
+        for name in sorted(words.needs - stated):
+            yield f"a {kind} without {name}, which it says is needed"
+    if (move.speed.tcp or 0.0) > spoken.fastest:
+        yield f"{move.speed.tcp} m/s, beyond the fastest ({spoken.fastest} m/s)"
+    for name, most in spoken.most.items():
+        if (getattr(move.speed, name) or 0.0) > most:
+            yield f"{name} of {getattr(move.speed, name)}, beyond the most ({most})"
+    if not spoken.work_objects and move.work_object != WORLD:
+        yield "a frame of targets"
+    if not spoken.external_axes and move.target.external:
+        yield "external axes"
+    if not spoken.stationary_tools and not move.tool.robot_held:
+        yield "a stationary tool"
+    zone = move.zone
+    wider = isinstance(zone, Radius) and zone.reorientation > zone.tcp
+    if wider and not spoken.zone_parts:
+        yield "a zone whose parts differ"
+    for event in move.events:
+        if spoken.outputs is None or not spoken.outputs.takes(event, move):
+            yield f"the event {event.text!r} at its place"
