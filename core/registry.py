@@ -171,6 +171,11 @@ class Registry:
         arms = [arm for owner in owners or self.vendors.values() for arm in all_listed(owner)]
         return matching(asked, arms)
 
+    def with_arm(self, robot: Robot) -> Registry:
+        """The same vendors, of which the robot's own knows that one by its name."""
+        own = self.find_vendor(robot.name.partition("/")[0]).with_robot(robot)
+        return replace(self, vendors=MappingProxyType({**self.vendors, own.name: own}))
+
     def robots_near(self, name: str) -> list[Listed]:
         """The arms whose names are most like one that none has; those of a vendor that it names."""
         vendor, slash, robot = name.partition("/")

@@ -98,7 +98,17 @@ def cell(file: str | Path) -> Cell:
     Raises:
         InputError: the file is unusable.
     """
+    return cell_around(file, None)
+
+
+def cell_around(file: str | Path, robot: Robot | None) -> Cell:
+    """The cell of a file; a robot of its name, if it names that one, is the one that is meant.
+
+    Raises:
+        InputError: the file is unusable.
+    """
     from ..core.cell.file import load_cell
 
     refuse_others("file", file, "str | Path")
-    return load_cell(Path(file), registry())
+    known = registry()
+    return load_cell(Path(file), known if robot is None else known.with_arm(robot))

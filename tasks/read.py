@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
 from .backup.finding import find_backup
-from .backup.opening import read_task, setup_in, task_of
+from .backup.opening import read_task, setup_in, task_of, told_of_setup
 from .backup.surrounding import surrounding_note
 from .catalogue import registry
 from .options.entries import TaskOptions, count, value
@@ -92,7 +92,7 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         SourceError: the text cannot be read; file, line and column are named.
         MotionError: a move that no robot can drive.
     """
-    backup = _backup_in(source, options)
+    backup = backup_in(source, options)
     if backup is not None:
         return _read_backup(backup, options)
     if options.task is not None:
@@ -249,11 +249,12 @@ def _open(program: Program) -> int:
     return sum(bool(move.open) for move in program.moves)
 
 
-def _backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
+def backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
     """The backup that a source is; None if it is a program.
 
-    A program file or a folder with programs in it is one of a robot that is named; if none is, the
-    backup may say which.
+    Beside a robot that is named, a program file is read by itself, and so is a folder with programs
+    in it that is no backup itself; if none is, the backup may say which. A cell says what stands
+    around: the arm itself is the backup's.
     """
     if isinstance(source, str) and ("\n" in source or not source):
         return None
@@ -261,9 +262,12 @@ def _backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
     if not path.exists():
         return None
     named = options.robot is not None or options.cell is not None
-    if named and options.task is None and _holds_program(path):
-        return None
-    return find_backup(path, registry())
+    if not named or options.task is not None or not _holds_program(path):
+        return find_backup(path, registry())
+    if path.is_file():
+        return None if options.robot is not None else find_backup(path, registry())
+    found = find_backup(path, registry(), marked=True)
+    return found if found is not None and found.root == path else None
 
 
 def _holds_program(path: Path) -> bool:
@@ -284,7 +288,8 @@ def _read_backup(backup: Backup, options: SourceOptions) -> Program:
         setup.robot,
     )
     setup = replace(setup, backup=backup)
-    return replace(program, setup=setup, notes=(*backup.notes, *program.notes))
+    notes = (*backup.notes, *told_of_setup(backup, task, setup), *program.notes)
+    return replace(program, setup=setup, notes=notes)
 
 
 read = by_keywords(read_with, SourceOptions)

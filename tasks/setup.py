@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from ..core.display import in_line
 from ..core.door import called, given, spelt, switched
 from ..core.errors import InputError, OptionError
-from .catalogue import cell as load
-from .catalogue import driver_of, registry, robots
+from ..core.robot_files import names_file
+from .catalogue import cell_around, driver_of, registry, robots
 from .catalogue import robot as robot_called
 from .options.entries import TaskOptions, choice, switch, value
 
@@ -120,13 +120,17 @@ class Setup:
         return self.cell
 
 
-def setup_of(options: RobotOptions) -> Setup:
+def setup_of(options: RobotOptions, known: Robot | None = None) -> Setup:
     """The robot that options name.
+
+    Args:
+        known: the arm as a backup has it, with its own ranges, base and external axes. Options that
+            name the same arm mean this one; what a cell file says of it goes first.
 
     Raises:
         InputError: none is named, robot and cell contradict each other, or a file is unusable.
     """
-    made = _stated(options)
+    made = _stated(options, known)
     if options.vendor not in (None, made.vendor.name):
         raise InputError(
             f"{given('vendor', str(options.vendor))}: {made.robot.name} is driven by "
@@ -154,7 +158,7 @@ def laid_on(made: Setup, options: RobotOptions) -> Setup:
     return made
 
 
-def _stated(options: RobotOptions) -> Setup:
+def _stated(options: RobotOptions, known: Robot | None) -> Setup:
     robot, cell = options.robot, options.cell
     if cell is None:
         if robot is None:
@@ -162,8 +166,10 @@ def _stated(options: RobotOptions) -> Setup:
                 f"which robot? Give {spelt('robot')} ({called('robots')} lists them) or "
                 f"{spelt('cell')}"
             )
-        return _driven(robot_called(robot, options.vendor) if isinstance(robot, str) else robot)
-    loaded = load(cell) if isinstance(cell, str | Path) else cell
+        arm = robot_called(robot, options.vendor) if isinstance(robot, str) else robot
+        same = isinstance(robot, str) and not names_file(robot) and known is not None
+        return _driven(known if same and known is not None and known.name == arm.name else arm)
+    loaded = cell_around(cell, known) if isinstance(cell, str | Path) else cell
     if isinstance(robot, str):
         robot = robot if robot == loaded.robot.name else robot_called(robot, options.vendor)
     name = robot if robot is None or isinstance(robot, str) else robot.name
@@ -276,7 +282,7 @@ def with_setup(program: Program, options: RobotOptions) -> tuple[Program, Setup]
         if made.robot is not own.robot:
             return in_setup(program, made), made
         return replace(program, setup=made), made
-    made = setup_of(options)
+    made = setup_of(options, own.robot if own is not None and own.backup is not None else None)
     said = options.motion is not None or (made.cell is not None and made.cell.motion is not None)
     if not said and own is not None and own.robot == made.robot:
         # A motion file that the program was read with stays, unless another is named.

@@ -33,7 +33,8 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
 
     Args:
         path: the TOML file; meshes are named relative to it.
-        registry: where the robot's name is looked up.
+        registry: where the robot's name is looked up; where it stands and its external axes are its
+            own, as long as the file says nothing of them.
 
     Raises:
         InputError: a file is missing or no TOML, a key is missing, unknown or of a wrong kind or
@@ -44,7 +45,7 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     axes = [_external_axis(name, t) for name, t in file.named_tables("external_axis").items()]
     robot = read_arm(file, _robot(file, registry, tuple(axes)))
     tools, shapes = _tools(file)
-    tables = {axis.name for axis in axes if axis.role is ExternalRole.TABLE}
+    tables = {axis.name for axis in robot.external_axes if axis.role is ExternalRole.TABLE}
     obstacles = _obstacles(file, tables)
     parts = _parts(file, tables, (*tools, *(o.name for o in obstacles)))
     frames = _frames(file, tables)
@@ -81,9 +82,10 @@ def _robot(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) 
             robot = registry.find_robot(named)
     except InputError as error:
         raise file.error("robot", str(error)) from None
-    base = pose_at(file, "base")
+    if file.has("base"):
+        robot = robot.with_base(pose_at(file, "base"))
     try:
-        return robot.with_base(base).with_external_axes(axes)
+        return robot.with_external_axes(axes) if axes else robot
     except InputError as error:
         raise file.error("external_axis", str(error)) from None
 

@@ -43,12 +43,13 @@ class _Found:
         return len(PurePosixPath(self.root).parts)
 
 
-def find_backup(path: str | Path, registry: Registry) -> Backup | None:
+def find_backup(path: str | Path, registry: Registry, marked: bool = False) -> Backup | None:
     """The backup in a folder, an archive or a file; None if there is none.
 
     Args:
         path: what a controller or its tools have written, or a folder with that in it somewhere.
         registry: whose vendors may have written it, and where its robots are looked up.
+        marked: whether programs alone are none.
 
     Raises:
         InputError: the path does not exist, there are several backups, or nothing can be read.
@@ -66,7 +67,9 @@ def find_backup(path: str | Path, registry: Registry) -> Backup | None:
         names = names_below(folder)
     else:
         folder, names = source.parent, [source.name]
-    found = _nearest(source, _found(names, registry)) or _programs_alone(names, registry)
+    found = _nearest(source, _found(names, registry))
+    if found is None and not marked:
+        found = _programs_alone(names, registry)
     if found is None:
         return None
     notes = (*notes, *_outside(source, found, names, registry))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.door import spelt
-from ...core.errors import InputError, OptionError, UnknownNameError
+from ...core.errors import InputError, Note, OptionError, UnknownNameError
 from ...core.program.entry_point import ALL, EntryPoint, entry_call, listed
 from ..catalogue import registry
 from ..options.kinds import refuse_others
@@ -19,8 +20,12 @@ if TYPE_CHECKING:
     from ...core.backup.backup import Backup, BackupEntry, Task
     from ...core.program.program import Program
     from ...core.program.target import JointTarget
+    from ...core.robot.model import Robot
     from ...core.source.execution.answers import Answers
     from ..setup import RobotOptions
+
+_APART = 1e-3
+"""m, and of half the turn's sine: bases that are one place."""
 
 
 def open_backup(path: str | Path) -> Backup:
@@ -81,7 +86,8 @@ def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
     """
     index = 0 if task.robot is None else task.robot
     if options.robot is not None or options.cell is not None:
-        return _as_backed_up(backup, index, setup_of(options), options)
+        arm = backup.robots[index].robot if 0 <= index < len(backup.robots) else None
+        return _as_backed_up(backup, arm, setup_of(options, arm), options)
     if not 0 <= index < len(backup.robots):
         raise OptionError(
             f"{backup.source}: it does not say which robot it is of; give {spelt('robot')}"
@@ -96,9 +102,30 @@ def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
     return laid_on(Setup(vendor, known.robot), options)
 
 
-def _as_backed_up(backup: Backup, index: int, made: Setup, options: RobotOptions) -> Setup:
+def told_of_setup(backup: Backup, task: Task, setup: Setup) -> list[Note]:
+    """What speaks against a robot that options name, by its backup."""
+    stated = backup.robots[task.robot] if task.robot is not None else None
+    if stated is None or (stated.robot is None and not stated.written):
+        return []
+    arm, driven = stated.robot, setup.robot
+    if arm is None or arm.name != driven.name:
+        own = stated.written if arm is None else arm.name
+        return [Note(f"the backup is of {own}: {driven.name} is driven, as it was named")]
+    apart = arm.base.inverse() @ driven.base
+    if max(math.hypot(*apart.position), math.hypot(*apart.quaternion[1:])) <= _APART:
+        return []
+    places = (", ".join(f"{1e3 * x + 0.0:.1f}" for x in r.base.position) for r in (arm, driven))
+    own, named = places
+    return [
+        Note(
+            f"the backup has the robot's base at {own} mm, the cell at {named} mm (or turned "
+            "otherwise): the cell's is taken"
+        )
+    ]
+
+
+def _as_backed_up(backup: Backup, known: Robot | None, made: Setup, options: RobotOptions) -> Setup:
     """A setup that options name, with what the backup states of how that same arm is driven."""
-    known = backup.robots[index].robot if 0 <= index < len(backup.robots) else None
     said = options.motion is not None or options.machine_data is not None
     said = said or (made.cell is not None and made.cell.motion is not None)
     if said or known is None or known.name != made.robot.name or backup.vendor != made.vendor.name:

@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING
 from ...core.door import called, spelt
 from ...core.errors import FlybyError, OptionError
 from ...core.program.entry_point import ALL
-from ..backup.finding import find_backup
 from ..backup.opening import read_task, setup_in
 from ..backup.surrounding import surrounding_note
 from ..catalogue import registry
 from ..emulate import EmulateOptions, emulate_with
-from ..read import SourceOptions, answers_of, read_undriven, read_with
+from ..read import SourceOptions, answers_of, backup_in, read_undriven, read_with
 from ..setup import Setup, setup_of
 
 if TYPE_CHECKING:
@@ -91,7 +90,7 @@ def state_of(path: Path, options: SourceOptions) -> StationState:
         FlybyError: the path is neither a program nor a backup, or nobody says which robot options
             are for.
     """
-    backup = _backup(path, options)
+    backup = backup_in(path, options)
     if backup is None:
         return _of_program(path, options)
     return _of_backup(path, backup, options)
@@ -103,14 +102,9 @@ def program_of(path: Path, options: SourceOptions) -> Program:
     Raises:
         FlybyError: it cannot be read.
     """
-    if _backup(path, options) is None and _undriven(path, options):
+    if backup_in(path, options) is None and _undriven(path, options):
         return read_undriven(path, options)
     return read_with(path, options)
-
-
-def _backup(path: Path, options: SourceOptions) -> Backup | None:
-    named = options.robot is not None or options.cell is not None
-    return None if named and path.is_file() else find_backup(path, registry())
 
 
 def _of_program(path: Path, options: SourceOptions) -> StationState:

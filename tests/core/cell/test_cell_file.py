@@ -178,7 +178,7 @@ def test_unknown_tools_and_frames_get_suggestions(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "key", "message"),
     [
-        ('robot = "acme/arm-1"', 'robot = "acme/arm-2"', "robot", "did you mean 'acme/arm-1'"),
+        ('robot = "acme/arm-1"', 'robot = "acme/arm-2"', "robot", "near it are acme/arm-1"),
         ('robot = "acme/arm-1"', "", "robot", "is missing"),
         ('robot = "acme/arm-1"', "robot = 3", "robot", "must be a string"),
         ("clearance_mm = 5", "clearance_mm = -5", "clearance", "zero or more"),

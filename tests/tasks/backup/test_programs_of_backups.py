@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 import zipfile
 from pathlib import Path
@@ -9,10 +10,12 @@ from pathlib import Path
 import pytest
 
 import flyby
-from flyby.core.errors import InputError, OptionError, SourceError
+from flyby.core.errors import FlybyError, InputError, OptionError, SourceError
+from flyby.core.program.program import Program
 from flyby.tasks.files.places import FilePlaces
 
 from ...vendors.abb.backup.station import Station, multimove, one_robot
+from ...vendors.ur.conftest import HOME, UR5E, Build
 
 
 @pytest.fixture
@@ -168,3 +171,87 @@ def test_a_cell_leaves_how_the_archive_says_its_arm_is_driven() -> None:
     alone = flyby.emulate(flyby.read(**press)).duration
     for named in ({"cell": examples / "cell/press.toml"}, {"robot": "kuka/kr16-2"}):
         assert flyby.emulate(flyby.read(**press, **named)).duration == pytest.approx(alone)
+
+
+NARROW = ((-150, 150), (-80, 140), (-170, 70), (-300, 300), (-110, 110), (-360, 360))
+
+
+def narrow(folder: Path) -> Path:
+    """A backup whose arm turns less far than its type does, and stands on a plinth."""
+    return Station(moc=one_robot("-base_frame_pos_z 0.5", NARROW)).write(folder)
+
+
+def cell_file(path: Path, *lines: str, robot: str = "abb/irb4600-40-255") -> Path:
+    path.write_text("\n".join([f'robot = "{robot}"', "clearance_mm = 1", *lines]))
+    return path
+
+
+def upper(program: Program) -> list[float]:
+    return [math.degrees(joint.upper) for joint in program.setup.robot.joints]
+
+
+@pytest.mark.parametrize("archive", [False, True])
+def test_beside_a_cell_the_arm_is_the_backups(tmp_path: Path, archive: bool) -> None:
+    folder = narrow(tmp_path / "station")
+    source = packed(folder) if archive else folder
+    bare = cell_file(tmp_path / "bare.toml")
+    program = flyby.read(source, cell=bare)
+    assert upper(program) == pytest.approx([high for _, high in NARROW])
+    assert program.setup.robot.base.position == (0.0, 0.0, 0.5)
+    assert program.setup.cell.robot == program.setup.robot
+    assert "the cell's is taken" not in str(program.notes)
+    limit = "[joint_limit.J1]\nrange_deg = [-90, 90]"
+    said = cell_file(tmp_path / "said.toml", "base = { xyz_mm = [0, 0, 300] }", limit)
+    program = flyby.read(source, cell=said)
+    assert upper(program) == pytest.approx([90, *(high for _, high in NARROW[1:])])
+    assert program.setup.robot.base.position == (0.0, 0.0, 0.3)
+    told = "base at 0.0, 0.0, 500.0 mm, the cell at 0.0, 0.0, 300.0"
+    assert any(told in str(note) for note in program.notes)
+    program = flyby.read(source, robot="IRB 4600-40/2.55")
+    assert upper(program) == pytest.approx([high for _, high in NARROW])
+
+
+def test_another_arm_than_the_backups_is_told(tmp_path: Path) -> None:
+    folder = narrow(tmp_path / "station")
+    program = flyby.read(folder, robot="abb/irb6640-180-255")
+    assert program.setup.robot.name == "abb/irb6640-180-255"
+    told = "the backup is of abb/irb4600-40-255: abb/irb6640-180-255 is driven, as it was named"
+    assert told in [note.message for note in program.notes]
+
+
+def test_every_task_takes_the_arm_of_the_backup(tmp_path: Path) -> None:
+    """A move to where the type gets and this arm does not is a fault, whatever is asked for."""
+    folder = narrow(tmp_path / "station")
+    module = folder / "RAPID/TASK1/PROGMOD/MainModule.mod"
+    module.write_text(module.read_text().replace("[[0,-20,20,0,60,0]", "[[160,-20,20,0,60,0]"))
+    cell = cell_file(tmp_path / "cell.toml")
+    program = flyby.read(folder, cell=cell)
+    assert len(flyby.emulate(program).faults) == 1
+    assert any("range" in found.message for found in flyby.check(program).errors)
+    with pytest.raises(FlybyError, match="beyond its limit of 150"):
+        flyby.zones(program)
+    found = flyby.diff(folder, folder, cell=cell)
+    assert any("Main" in one.name and one.lasting for one in found.routines)
+    alone = flyby.read(folder)
+    assert len(flyby.emulate(alone, cell=cell).faults) == 1
+
+
+def test_a_folder_that_is_a_backup_and_holds_a_program_stays_one(tmp_path: Path) -> None:
+    """The root of a KUKA archive holds ``cell.src``: beside a cell it is no folder of programs."""
+    examples = Path(__file__).parents[3] / "examples"
+    root = next((examples / "kuka_archive").rglob("R1"))
+    whole = flyby.read(examples / "kuka_archive", entry="PRESS")
+    alone = flyby.read(root, entry="PRESS", cell=examples / "cell/press.toml")
+    assert len(alone.moves) == len(whole.moves)
+
+
+def test_a_program_tree_beside_a_cell_keeps_its_own_calibration(tmp_path: Path) -> None:
+    build = Build()
+    rows = ((0.001, *UR5E[0][1:]), *UR5E[1:])
+    step = build.move(build.fixed("A", HOME, rows=rows))
+    build.packed(tmp_path / "job.urp", build.program(step, rows=rows))
+    cell = cell_file(tmp_path / "cell.toml", robot="ur/ur5e")
+    alone = flyby.read(tmp_path / "job.urp").setup.robot
+    beside = flyby.read(tmp_path / "job.urp", cell=cell).setup.robot
+    assert beside.joints == alone.joints
+    assert beside.joints != flyby.robot("ur/ur5e").joints
