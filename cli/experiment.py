@@ -32,10 +32,10 @@ def experiment(
     check_folder("--out", out)
     inputs = options.inputs()
     if out.is_dir():
-        from ..tasks.results.experiments import PAGE, PICTURE
+        from ..tasks.results.experiments import PAGE
 
-        # Said before the work, not after it: these two are always written.
-        check_outputs({"--out": [out / PAGE, out / PICTURE]}, inputs, force)
+        # Said before the work, not after it: the page is always written.
+        check_outputs({"--out": [out / PAGE]}, inputs, force)
     with progress("reading the robot") as say:
         made = experiment_with(replace(options, report=say))
         say("writing")
@@ -58,8 +58,8 @@ def _tell(found: DesignedExperiment, out: Path) -> None:
         warn(note)
     print_rich(
         f"{counted(made.runs, 'run')} for {made.robot.name}, {made.seconds / 60:.0f} min at the "
-        f"robot; not possible: {len(made.skipped)}, without time: {len(made.unused)}: see {PAGE}",
-        f"wrote {out}",
+        f"robot; not possible: {len(made.skipped)}, without time: {len(made.unused)}",
+        f"wrote {out}; take {out / PAGE} to the robot",
     )
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 if TYPE_CHECKING:
     from .backup.backup import Backup
     from .program.program import Program
+    from .recording import Recording
     from .robot.model import Robot
     from .source.reading import Files, ReadOptions
 
@@ -79,8 +80,20 @@ class Patcher(Protocol):
 class Recorder(Protocol):
     """Writes source that drives a program and logs itself."""
 
-    def record(self, program: Program, robot: Robot, period: float) -> Sources:
-        """Source files by file name; joint values are logged every ``period`` s."""
+    def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
+        """Source files by file name; joint values are logged every ``period`` s.
+
+        Runs follow each other from one start, each into its own log, up to one that the robot is
+        jogged to; the next start goes on there.
+        """
+        ...
+
+    def usual_period(self, robot: Robot) -> float:
+        """s between samples where nobody says: short, and of controllers without options."""
+        ...
+
+    def steps(self, recording: Recording, period: float) -> Sequence[str]:
+        """What is done at the controller, a sentence or two each, in their order."""
         ...
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .motion.model.motion_model import MotionModel
     from .program.program import Program
     from .program.target import Configuration, JointTarget
+    from .recording import Recording
     from .robot.arm_list import Listed
     from .robot.model import Robot
     from .source.execution.answers import Answers
@@ -267,11 +268,27 @@ class Vendor:
         Raises:
             InputError: the vendor has no recorder, or its language does not drive the robot.
         """
+        from .recording import Recording
+
+        return self.record_runs(Recording.of(program), robot, period)
+
+    def record_runs(self, recording: Recording, robot: Robot, period: float) -> Sources:
+        """The same of several programs, which are loaded at once.
+
+        Raises:
+            InputError, MotionError: as `record`.
+        """
         self.check_written(robot)
         recorder = self._part(self.recorder, "recorder")
-        said = self._approached(program, robot)
+        runs = tuple(
+            replace(run, program=self._approached(run.program, robot)) for run in recording.runs
+        )
+        said = replace(recording, runs=runs)
         sources = recorder.record(said, robot, period)
-        self._check_alone(said, robot, sources, waits=False)
+        # The same runs from one start, which is what can be read from beginning to end.
+        through = replace(said, runs=tuple(replace(run, by_hand=False) for run in runs))
+        read = sources if said == through else recorder.record(through, robot, period)
+        self._check_alone(said.program, robot, read, waits=False)
         return sources
 
     def _check_alone(

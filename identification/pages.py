@@ -1,4 +1,4 @@
-"""Pages for people: Markdown from templates that escape every value they are given.
+"""Pages for people: Markdown and HTML from templates that escape every value they are given.
 
 Names of files, runs, tools and figures come from anywhere, and may be written to be run by what
 shows the page. Templates alone hold marks; values are text, whatever they look like.
@@ -24,6 +24,12 @@ def render_markdown(template: str, **values: Any) -> str:
     return _environment().from_string(template).render(values)
 
 
+def render_html(template: str, **values: Any) -> str:
+    """A page of HTML."""
+    environment = _environment().overlay(finalize=lambda value: _text(value))
+    return environment.from_string(template).render(values)
+
+
 @cache
 def _environment() -> Environment:
     return Environment(
@@ -34,6 +40,10 @@ def _environment() -> Environment:
         keep_trailing_newline=True,
         finalize=_line,
     )
+
+
+def _text(value: Any) -> Any:
+    return value if isinstance(value, Markup) else shown(str(value))
 
 
 def _line(value: Any) -> Any:

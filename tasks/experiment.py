@@ -47,7 +47,7 @@ class ExperimentOptions(CellOptions):
         POSITIVE,
     )
     overhead: float = number(
-        60.0, "Seconds that a run takes beside its motion.", TIME, NOT_NEGATIVE
+        20.0, "Seconds that a run takes beside its motion.", TIME, NOT_NEGATIVE
     )
     about: str | Sequence[str] | None = value(
         None,

@@ -23,6 +23,7 @@ from ...core.program.move import Move, MoveC
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.zone import FINE
+from ...core.recording import RecordedRun, Recording
 from ...core.source.patch.edits import difference
 from ...core.vendor import Vendor
 from .candidates import PostureFamily
@@ -38,10 +39,11 @@ from .words import Words
 
 Say = Callable[[str], None]
 
-PERIODS = (0.008, 0.012, 0.016, 0.024, 0.1)
-"""s between samples: the first that the vendor's recorder takes."""
 ROUNDED = 2e-6
 """m, rad, and as a share: how near numbers must be read back (RAPID has single precision)."""
+PROGRAM = "flyby_runs"
+"""What the program of all runs is called."""
+LOG_SUFFIX = ".csv"
 SPARE = 0.01
 """m that postures keep beyond the clearance, for the motion round them."""
 
@@ -108,17 +110,24 @@ class _Designer:
             reasons = "; ".join(f"{s.what}: {s.reason}" for s in self.skipped[:3])
             lift = f"; {lifted()}" if FLOOR in reasons else ""
             raise InputError(f"no run of this experiment is possible: {reasons}{lift}")
+        runs = list(self._with_ways(runs))
+        recording = Recording(PROGRAM, tuple(_recorded(runs)))
+        recorder = self.vendor.recorder
+        assert recorder is not None  # it has taken a period
+        self.say("writing the program of all runs")
         return Experiment(
             self.cell.robot,
             self.plan,
             self.controller.model,
             period,
             tuple(sites),
-            tuple(self._with_ways(runs)),
+            tuple(runs),
             tuple(self.skipped),
             tuple(choice.left_over()),
             informer.precision(choice.information),
             tuple(self._notes(choice, len(sites))),
+            self.vendor.record_runs(recording, self.cell.robot, period),
+            tuple(recorder.steps(recording, period)),
         )
 
     def _sites(self) -> list[Site]:
@@ -172,20 +181,14 @@ class _Designer:
         return (made for topic in topics for made in runs_about(topic, family))
 
     def _period(self, candidates: list[CandidateRun]) -> float:
-        """The plan's, or the first that the recorder takes."""
+        """The plan's, or what the recorder usually takes."""
         program = candidates[0].program if candidates else Program(())
-        if self.plan.period is not None:
-            self.vendor.record(program, self.cell.robot, self.plan.period)
-            return self.plan.period
-        refusal: FlybyError | None = None
-        for period in PERIODS:
-            try:
-                self.vendor.record(program, self.cell.robot, period)
-            except InputError as error:
-                refusal = error
-            else:
-                return period
-        raise refusal or InputError("the recorder takes no period")
+        recorder, period = self.vendor.recorder, self.plan.period
+        if period is None and recorder is not None:
+            period = recorder.usual_period(self.cell.robot)
+        self.vendor.record(program, self.cell.robot, period or 0.0)
+        assert period is not None  # a vendor without recorder is refused
+        return period
 
     def _options(self, candidates: list[CandidateRun], informer: Informer) -> list[Option]:
         options = []
@@ -289,6 +292,12 @@ class _Designer:
                 yield f"{topic}: {pairs} have no place in the time there is"
         if not self.plan.about:
             yield from (f"{level} has no place in the time there is" for level in missing)
+
+
+def _recorded(runs: Iterable[Designed]) -> Iterator[RecordedRun]:
+    for number, run in enumerate(runs, 1):
+        log = run.stem(number) + LOG_SUFFIX
+        yield RecordedRun(run.program, log, by_hand=not run.way_proven)
 
 
 def main_file(sources: Sources, vendor: Vendor) -> str:

@@ -1,129 +1,53 @@
-"""The page that a user takes to the robot: what to run in which order, and what comes of it.
+"""The page that a user takes to the robot: what to do, what to run, and what comes of it.
 
-The template alone holds marks; see `identification.pages`.
+One HTML file that opens from disk and prints on A4. The template alone holds marks; see
+`identification.pages`.
 """
 
 from __future__ import annotations
 
+import base64
 import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from markupsafe import Markup
+import numpy as np
 
-from ..pages import render_markdown
-from .kinds import Topic
+from ..pages import render_html
+from .kinds import Kind, Topic
+from .page_template import TEMPLATE
 from .plan import Alternative, Designed, Experiment, Skipped
 from .purpose import DECISIONS, QUESTIONS, fit_text
 from .selection import seconds_of
 
-LOG_SUFFIX = ".csv"
 _UNUSED = 12
 """Runs that there was no time for, that are listed."""
+BY_HAND = "by hand"
 UNKNOWN = "nothing that the model knows of"
-_TEMPLATE = """\
-{% macro table(heading, rows) %}
-|{% for cell in heading %} {{ cell }} |{% endfor %}
-
-|{% for cell in heading %} --- |{% endfor %}
-
-{% for row in rows %}
-|{% for cell in row %} {{ cell }} |{% endfor %}
-
-{% endfor %}
-{% endmacro %}
-{% macro left_out(entries, most) %}
-{{ table(("what", "why"), entries[:most]) }}
-{% if entries | length > most %}
-
-and {{ entries | length - most }} more.
-{% endif %}
-{% endmacro %}
-# Test motions of {{ robot }}
-
-{{ runs | length }} runs, {{ corners }} corners: {{ motion }} min of motion (emulated), {{ \
-minutes }} min at the robot.
-
-Logged every {{ period }} ms. Seed {{ seed }}.
-
-{% if cell %}
-Cell: {{ cell }}.
-
-{% endif %}
-{% for note in notes %}
-- {{ note }}
-
-{% endfor %}
-1. Drive each run at reduced speed first, in the mode that lets you stop at any time, and watch \
-it. What is proven begins at the start of the run; the first move of a program goes there from \
-where the robot stands.
-2. Mount {{ tool }} as it is declared in the programs; set the speed override to 100 %.
-3. For each run, in the order of the table (the most informative come first, so stop when time is \
-up): load the files in its folder as their first lines say, start, fetch the log.
-4. Put the log beside the run's record: `NAME{{ log_suffix }}` beside `NAME.json`. **The \
-controller writes every log under one name: fetch it before the next run.** Logs of another form \
-(EGM, RSI, RTDE, trace) do as well, under that name.
-5. `flyby compare NAME.json` holds the log against the emulation. Records and logs together are \
-what a fit takes.
-
-## Runs
-
-{{ table(("", "run", "moves", "TCP, mm/s", "corners", "turns, °", "zones, mm", "posture",
-          "motion, s", "clock, min", "way there", "gain, nats"), runs) }}
-*clock*: when the run is over, if loading, starting and fetching take {{ overhead }} s. *way \
-there*: whether the straight way in joint space from the end of the run before is proven to keep \
-clear; *by hand*: it is not, so jog the robot to the start: the first move of the program goes \
-there straight. *gain*: what the run tells of the motion model beyond those before it.
-
-{% if topics %}
-## What the runs are for
-
-*If instead*: what may be so instead of what is emulated; how much longer the run takes then, and \
-how far from the emulated path it runs. `flyby compare NAME.json` says which of them the log is \
-nearest to.
-
-{% for topic in topics %}
-### {{ topic.name }}
-
-{{ topic.question }} {{ topic.decision }}
-
-{{ table(("run", "motion, s", "figures that it shows", "if instead"), topic.rows) }}
-{% if topic.fits %}
-With the logs beside the records: `flyby identify FOLDER --robot ROBOT{{ topic.fits }}`
-
-{% endif %}
-{% endfor %}
-{% endif %}
-## Postures
-
-{{ table(axes, postures) }}
-## What the logs would tell
-
-Standard deviations of the figures of the motion model, before and after.
-
-{{ table(("figure", "looked at", "before", "after"), precision) }}
-{% if skipped %}
-## Not possible
-
-{{ left_out(skipped, skipped | length) }}
-{% endif %}
-{% if unused %}
-## Possible, if there is more time
-
-{{ left_out(unused, most_unused) }}
-{% endif %}
-"""
+_SHOWN_BY = {
+    Kind.LINES: "how corners between lines run and how fast they are passed",
+    Kind.JOINTS: "how corners between joint moves run and how fast they are passed",
+    Kind.ARCS: "how corners between arcs run and how fast they are passed",
+    Kind.LINES_AND_JOINTS: "corners between lines and joint moves, both ways",
+    Kind.LINES_AND_ARCS: "corners between lines and arcs, both ways",
+    Kind.TURNS: "corners in which the tool turns otherwise before than behind",
+    Kind.LINE_STOPS: "accelerations along lines, and settling at stops",
+    Kind.JOINT_STOPS: "accelerations of joint moves, and settling at stops",
+    Kind.SINGLE_AXES: "the greatest acceleration of each axis",
+}
 
 
-def page(experiment: Experiment, cell: str | None) -> str:
-    """The page as Markdown.
+def page(experiment: Experiment, cell: str | None, picture: bytes | None = None) -> str:
+    """The page as HTML.
 
     Args:
         experiment: what was designed.
         cell: name of the cell file; None if there was none.
+        picture: PNG of the runs in the cell; None for none.
     """
-    return render_markdown(
-        _TEMPLATE,
+    runs = list(_rows(experiment))
+    return render_html(
+        TEMPLATE,
         robot=experiment.robot.name,
         corners=sum(len(run.candidate.corners) for run in experiment.runs),
         motion=f"{sum(run.duration for run in experiment.runs) / 60:.0f}",
@@ -133,33 +57,61 @@ def page(experiment: Experiment, cell: str | None) -> str:
         cell=cell,
         notes=experiment.notes,
         tool=experiment.plan.tool.name,
-        log_suffix=LOG_SUFFIX,
         overhead=f"{experiment.plan.overhead:.0f}",
-        runs=list(_rows(experiment)),
-        axes=("", *experiment.robot.axis_names),
+        steps=experiment.steps,
+        files=list(experiment.sources),
+        starts=1 + sum(row["by_hand"] for row in runs[1:]),
+        fastest=f"{1e3 * max(_speeds(experiment)):.0f}",
+        runs=runs,
+        axes=experiment.robot.axis_names,
         topics=list(_topics(experiment)),
+        fits=_fits(experiment, experiment.runs),
         postures=list(_postures(experiment)),
         precision=list(_precision(experiment)),
         skipped=_left_out(experiment.skipped),
-        unused=_left_out(experiment.unused),
-        most_unused=_UNUSED,
+        unused=_left_out(experiment.unused[:_UNUSED]),
+        unused_more=max(0, len(experiment.unused) - _UNUSED),
+        picture=None if picture is None else base64.b64encode(picture).decode(),
     )
 
 
-def _rows(experiment: Experiment) -> Iterable[Sequence[str]]:
+def _speeds(experiment: Experiment) -> Iterable[float]:
+    """m/s, the greatest of the TCP in each run."""
+    for run in experiment.runs:
+        driven = run.run.trajectory
+        ways = np.linalg.norm(np.diff(driven.position, axis=0), axis=1)
+        yield float((ways / np.diff(driven.t)).max())
+
+
+def _rows(experiment: Experiment) -> Iterable[dict[str, Any]]:
     clock = 0.0
     for number, made in enumerate(experiment.runs, 1):
         clock += seconds_of(made.duration, experiment.plan)
-        yield (
-            str(number),
-            made.candidate.name,
-            *described(made),
-            str(made.candidate.posture + 1),
-            f"{made.duration:.1f}",
-            f"{clock / 60:.0f}",
-            way(made, number == 1),
-            f"{made.gain:.2f}",
-        )
+        kind, speed, corners, turns, zones = described(made)
+        yield {
+            "number": number,
+            "name": made.candidate.name,
+            "stem": made.stem(number),
+            "for": purpose_text(made),
+            "kind": kind,
+            "speed": speed,
+            "corners": corners,
+            "turns": turns,
+            "zones": zones,
+            "posture": made.candidate.posture + 1,
+            "duration": f"{made.duration:.1f}",
+            "clock": f"{clock / 60:.0f}",
+            "by_hand": way(made, number == 1) == BY_HAND,
+            "start": [f"{math.degrees(value):.2f}" for value in made.candidate.start],
+            "gain": f"{made.gain:.2f}",
+        }
+
+
+def purpose_text(made: Designed) -> str:
+    """What a run is for, in a line."""
+    if made.topic is not None:
+        return f"{made.topic}: {made.candidate.kind}"
+    return _SHOWN_BY[made.candidate.kind]
 
 
 def described(made: Designed) -> tuple[str, str, str, str, str]:
@@ -179,7 +131,14 @@ def described(made: Designed) -> tuple[str, str, str, str, str]:
 
 def way(made: Designed, first: bool) -> str:
     """Whether the way to a run is proven."""
-    return "proven" if made.way_proven and not first else "by hand"
+    return "proven" if made.way_proven and not first else BY_HAND
+
+
+def _fits(experiment: Experiment, runs: Iterable[Designed]) -> str:
+    """The options of ``identify`` for the figures that runs show."""
+    keys = dict.fromkeys(key for one in runs for key in one.figures)
+    texts = sorted(text for key in keys if (text := fit_text(experiment.model, key)))
+    return "".join(f" --fit '{text}'" for text in texts)
 
 
 def _topics(experiment: Experiment) -> Iterable[dict[str, Any]]:
@@ -188,8 +147,6 @@ def _topics(experiment: Experiment) -> Iterable[dict[str, Any]]:
         runs = [one for one in experiment.runs if one.topic is topic]
         if not runs:
             continue
-        keys = dict.fromkeys(key for one in runs for key in one.figures)
-        texts = sorted(text for key in keys if (text := fit_text(experiment.model, key)))
         yield {
             "name": topic,
             "question": QUESTIONS[topic],
@@ -198,8 +155,7 @@ def _topics(experiment: Experiment) -> Iterable[dict[str, Any]]:
                 (one.candidate.name, f"{one.duration:.1f}", grouped(one.figures), instead(one))
                 for one in runs
             ],
-            # Keys of the model alone, which hold no marks that a page must not have.
-            "fits": Markup("".join(f" --fit '{text}'" for text in texts)),
+            "fits": _fits(experiment, runs),
         }
 
 

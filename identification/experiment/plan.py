@@ -44,10 +44,10 @@ class Plan:
         about: the open questions that runs are to settle; none for runs of all kinds.
         postures: how many, or the configurations (N,) themselves; None for the usual number.
         minutes: at the robot; None for all runs.
-        overhead: s, what a run takes beside its motion: to load, to start, to fetch the log.
+        overhead: s, what a run takes beside its motion: the way there, writing the log.
         longest: s, that one run may last.
         margin: rad (m) that joints keep from their limits.
-        period: s between samples; None for the shortest of `PERIODS` that the recorder takes.
+        period: s between samples; None for what the recorder usually takes.
         tool: that is mounted.
         seed: of all that is drawn.
 
@@ -62,7 +62,7 @@ class Plan:
     about: tuple[Topic, ...] = ()
     postures: int | Sequence[FloatArray] | None = None
     minutes: float | None = 60.0
-    overhead: float = 60.0
+    overhead: float = 20.0
     longest: float = 30.0
     margin: float = math.radians(5)
     period: float | None = None
@@ -253,6 +253,14 @@ class Designed:
     way_proven: bool | None = None
     purpose: Purpose | None = None
 
+    def stem(self, number: int) -> str:
+        """What record and log of the run are called without their endings.
+
+        Args:
+            number: of the run among those of the experiment, from 1.
+        """
+        return f"{number:02}_{self.candidate.name}"
+
     @property
     def duration(self) -> float:
         """s, emulated."""
@@ -309,6 +317,8 @@ class Experiment:
         unused: runs that there was no time for, the most informative first.
         precision: of each figure of the motion model.
         notes: what a user should know.
+        sources: all runs as what is loaded at once, by file name.
+        steps: what is done at the controller.
     """
 
     robot: Robot
@@ -321,6 +331,8 @@ class Experiment:
     unused: tuple[Skipped, ...]
     precision: tuple[Precision, ...]
     notes: tuple[str, ...]
+    sources: Sources
+    steps: tuple[str, ...]
 
     @property
     def seconds(self) -> float:

@@ -3,6 +3,7 @@ its log will be."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from ...core.errors import InputError
@@ -18,7 +19,9 @@ from .plan import Designed, PlannedCorner
 _USUAL = Speed()
 
 
-def record(made: Designed, robot: Robot, log: str, period: float) -> dict[str, Any]:
+def record(
+    made: Designed, robot: Robot, log: str, period: float, program: Iterable[str]
+) -> dict[str, Any]:
     """The record of a designed run.
 
     Poses are in the robot's base, so that the robot of the catalogue drives the record. It states
@@ -29,6 +32,7 @@ def record(made: Designed, robot: Robot, log: str, period: float) -> dict[str, A
         robot: that drives it.
         log: name of the file, beside the record, that the log will be put into.
         period: s between its samples.
+        program: files of the program that drives it.
 
     Raises:
         InputError: records do not hold such a program.
@@ -38,7 +42,7 @@ def record(made: Designed, robot: Robot, log: str, period: float) -> dict[str, A
     return {
         "robot": robot.name,
         "log": {"file": log, "period_s": period},
-        "program": list(made.sources),
+        "program": list(program),
         "design": {
             "kind": str(candidate.kind),
             "posture": candidate.posture + 1,

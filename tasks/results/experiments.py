@@ -12,15 +12,17 @@ from typing import Any
 from ...core.cell.cell import Cell
 from ...core.display import counted
 from ...core.notebook import PictureCurve, page, picture, table
-from ...identification.experiment.page import LOG_SUFFIX, described, way
+from ...identification.experiment.design import LOG_SUFFIX
+from ...identification.experiment.page import described, way
 from ...identification.experiment.page import page as make_page
 from ...identification.experiment.picture import draw_experiment
 from ...identification.experiment.plan import Experiment
 from ...identification.experiment.purpose import QUESTIONS
 from ...identification.experiment.record import purpose_data, record
 
-PAGE, PICTURE, PLAN, RECORD = "README.md", "overview.png", "plan.json", ".json"
-"""The first two are always written; the plan if runs are about open questions."""
+PAGE, PLAN, RECORD, FOLDER = "experiment.html", "plan.json", ".json", "program"
+"""The page is always written, the plan if runs are about open questions; the program lies in the
+folder."""
 COLUMNS = (
     ("", "right"),
     ("run", "left"),
@@ -53,20 +55,19 @@ class DesignedExperiment:
 
     @cached_property
     def files(self) -> dict[str, bytes]:
-        """Programs in a folder each, a record for each log to come, a page and a picture."""
+        """The program of all runs, a record for each log to come, and a page."""
         made = self.experiment
-        found: dict[str, bytes] = {}
-        for run in made.runs:
-            name = run.candidate.name
-            for source, text in run.sources.items():
-                found[f"{name}/{source}"] = text.encode()
-            told = record(run, made.robot, name + LOG_SUFFIX, made.period)
-            found[name + RECORD] = (json.dumps(told, indent=1) + "\n").encode()
+        program = {f"{FOLDER}/{name}": text.encode() for name, text in made.sources.items()}
+        found = dict(program)
+        for number, run in enumerate(made.runs, 1):
+            stem = run.stem(number)
+            told = record(run, made.robot, stem + LOG_SUFFIX, made.period, program)
+            found[stem + RECORD] = (json.dumps(told, indent=1) + "\n").encode()
         if made.plan.about:
             plan = {"robot": made.robot.name, "runs": list(self._purposes())}
             found[PLAN] = (json.dumps(plan, indent=1) + "\n").encode()
-        found[PAGE] = make_page(made, None if self.file is None else self.file.name).encode()
-        found[PICTURE] = draw_experiment(self.cell, made)
+        cell = None if self.file is None else self.file.name
+        found[PAGE] = make_page(made, cell, draw_experiment(self.cell, made)).encode()
         return found
 
     def _purposes(self) -> Iterator[dict[str, Any]]:

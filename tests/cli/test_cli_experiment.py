@@ -14,6 +14,7 @@ from typer.testing import Result
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.blend import Blend
 from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_robot, find_vendor
 
@@ -48,16 +49,19 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 @pytest.mark.parametrize("robot", ["abb/irb6640-180-255", "kuka/kr3-r540", "ur/ur5e"])
 def test_a_folder_holds_programs_records_a_page_and_a_picture(folders, robot: str) -> None:
     folder = folders(robot)
-    names = {path.stem for path in folder.glob("*.json")}
-    assert names == {"p1_line_v200_1", "p1_joint_v200_1"}
-    page = (folder / "README.md").read_text("utf-8")
-    assert (folder / "overview.png").read_bytes().startswith(b"\x89PNG")
+    names = sorted(path.stem for path in folder.glob("*.json"))
+    assert [name[:3] for name in names] == ["01_", "02_"]
+    assert {name[3:] for name in names} == {"p1_line_v200_1", "p1_joint_v200_1"}
+    page = (folder / "experiment.html").read_text("utf-8")
+    assert "data:image/png;base64," in page and "Safety" in page
+    program = {f"program/{path.name}" for path in (folder / "program").iterdir()}
     suffix = {"abb": ".mod", "kuka": ".src", "ur": ".script"}[robot.partition("/")[0]]
+    assert f"program/flyby_runs{suffix}" in program
+    text = (folder / f"program/flyby_runs{suffix}").read_text("utf-8")
     for name in names:
         told = json.loads((folder / f"{name}.json").read_text("utf-8"))
-        assert name in page and told["log"]["file"] == f"{name}.csv"
-        assert {path.name for path in (folder / name).iterdir()} == set(told["program"])
-        assert name + suffix in told["program"]
+        assert f"{name}.csv" in page and told["log"]["file"] == f"{name}.csv"
+        assert set(told["program"]) == program and text.count(f'{name}.csv"') >= 1
         assert len(told["design"]["corners"]) == 4 and len(told["moves"]) == 9
 
 
@@ -68,11 +72,17 @@ def test_a_log_that_comes_back_is_compared(
     """A controller with another motion model drives the run, from elsewhere or from its start, and
     logs it with noise: with the model that it has, what is left is the noise."""
     robot, vendor = find_robot("ur/ur5e"), find_vendor("ur")
-    name = "p1_joint_v200_1"
+    (found,) = folders(robot.name).glob("*_p1_joint_v200_1.json")
+    name = found.stem
     record = tmp_path / f"{name}.json"
-    record.write_bytes((folders(robot.name) / record.name).read_bytes())
-    source = folders(robot.name) / name / f"{name}.script"
-    program = vendor.read_file(source, robot=robot)
+    record.write_bytes(found.read_bytes())
+    whole = vendor.read_file(found.parent / "program" / "flyby_runs.script", robot=robot)
+    counts = [
+        len(json.loads(path.read_text("utf-8"))["moves"])
+        for path in sorted(found.parent.glob("*.json"))
+    ]
+    begin = sum(counts[: int(name[:2]) - 1])
+    program = Program(whole.moves[begin : begin + counts[int(name[:2]) - 1]])
     model = replace(vendor.motion_of(robot), joint=Blend(beta=(1.5,)), smoothing=(0.04,))
     start = JointTarget(tuple(value + away for value in program.moves[0].target.joints))
     driven = Controller(vendor, robot, model).run(program, start, 0.008).trajectory
@@ -99,9 +109,9 @@ def test_a_log_that_comes_back_is_compared(
 
 
 def test_a_run_without_its_log_says_what_is_missing(folders, flyby: Flyby) -> None:
-    record = folders("ur/ur5e") / "p1_line_v200_1.json"
+    (record,) = folders("ur/ur5e").glob("*_p1_line_v200_1.json")
     result = flyby("compare", record)
-    assert result.exit_code == 1 and "p1_line_v200_1.csv" in result.stderr
+    assert result.exit_code == 1 and f"{record.stem}.csv" in result.stderr
 
 
 def test_files_are_replaced_only_when_told(folders, flyby: Flyby) -> None:
@@ -175,19 +185,19 @@ def test_runs_about_questions_come_with_a_plan(flyby: Flyby, tmp_path: Path) -> 
     names = [run["run"] for run in plan["runs"]]
     assert names == [run["name"] for run in told["runs"]] and "p1_rest" in names
     clock = 0.0
-    for run, again in zip(plan["runs"], told["runs"], strict=True):
-        record = json.loads((out / f"{run['run']}.json").read_text("utf-8"))
+    for number, (run, again) in enumerate(zip(plan["runs"], told["runs"], strict=True), 1):
+        record = json.loads((out / f"{number:02}_{run['run']}.json").read_text("utf-8"))
         assert run["about"] == again["about"] == record["design"]["about"]
         assert run["figures"] == record["design"]["figures"] and run["question"].endswith("?")
-        assert run["over_at_s"] == pytest.approx(clock + run["duration_s"] + 60.0)
+        assert run["over_at_s"] == pytest.approx(clock + run["duration_s"] + 20.0)
         clock = run["over_at_s"]
         for other in run["instead"]:
             changed = (abs(other["longer_s"]), other["apart_m"], other["joints_rad"] or 0.0)
             assert other["if"] and max(changed) > 1e-6
     rest = next(run for run in plan["runs"] if run["about"] == "postures")
     assert any("80 %" in other["if"] and other["longer_s"] > 0.05 for other in rest["instead"])
-    text = (out / "README.md").read_text("utf-8")
-    assert "## What the runs are for" in text and "### reversals" in text
+    text = (out / "experiment.html").read_text("utf-8")
+    assert "<h2>What the runs are for</h2>" in text and "<h3>reversals</h3>" in text
 
 
 def test_a_cell_and_a_posture_are_taken(flyby: Flyby, tmp_path: Path) -> None:
@@ -209,10 +219,11 @@ def test_a_cell_and_a_posture_are_taken(flyby: Flyby, tmp_path: Path) -> None:
     told = json.loads(result.stdout)
     assert told["postures_rad"] == [pytest.approx(np.radians([float(v) for v in at.split(",")]))]
     assert told["notes"] == [] and all("proven" in run["clearance"] for run in told["runs"])
-    record = json.loads((out / "p1_line_v200_1.json").read_text("utf-8"))
+    (path,) = out.glob("*_p1_line_v200_1.json")
+    record = json.loads(path.read_text("utf-8"))
     assert record["tool"]["xyz_m"] == [0.01, 0.0, 0.09]
     vendor, robot = find_vendor("kuka"), find_robot("kuka/kr3-r540")
-    source = out / "p1_line_v200_1" / "p1_line_v200_1.src"
+    source = out / "program" / "flyby_runs.src"
     read = vendor.read_file(source, robot=robot)
     assert read.moves[1].tool.tcp.position == pytest.approx((0.01, 0.0, 0.09))
     assert isinstance(read.moves[0], MoveJ) and isinstance(read.moves[1], MoveL)

@@ -264,7 +264,7 @@ def test_a_missing_part_says_what_is_there() -> None:
     with pytest.raises(InputError, match="acme has no patcher"):
         one.patch(None, {})  # type: ignore[arg-type]
     with pytest.raises(InputError, match="acme has no recorder"):
-        one.record(None, SimpleNamespace(name="acme/arm-1"), 0.004)  # type: ignore[arg-type]
+        one.record(Program(()), SimpleNamespace(name="acme/arm-1"), 0.004)  # type: ignore[arg-type]
 
 
 def test_language_parts_are_reached_through_the_vendor() -> None:

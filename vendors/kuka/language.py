@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ...core.language import Sources
     from ...core.program.program import Program
+    from ...core.recording import Recording
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
 
@@ -47,8 +48,20 @@ class Krl:
 
         return patch(program, robot, options)
 
-    def record(self, program: Program, robot: Robot, period: float) -> Sources:
+    def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
         """See `flyby.core.language.Recorder.record`."""
         from .record import record
 
-        return record(program, robot, period)
+        return record(recording, robot, period)
+
+    def steps(self, recording: Recording, period: float) -> Sequence[str]:
+        """See `flyby.core.language.Recorder.steps`."""
+        from .record import steps
+
+        return steps(recording, period)
+
+    def usual_period(self, robot: Robot) -> float:
+        """See `flyby.core.language.Recorder.usual_period`."""
+        from .record import SHORTEST_PERIOD
+
+        return SHORTEST_PERIOD

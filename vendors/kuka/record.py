@@ -1,8 +1,12 @@
-"""Program → KRL files that drive it and log the axes with time.
+"""Programs → KRL files that drive them and log the axes with time.
 
 The submit interpreter, which runs beside the robot program, takes samples into arrays; when the
 motion has ended, the robot program writes them to a file of comma-separated values, ``t`` in s and
 ``q1 …`` in rad (m for linear axes), as the package reads logs.
+
+Several runs are routines of one file. Its program drives them from the one that ``FB_RUN`` says,
+which a data list keeps; before one that the robot is jogged to it ends, so that the next start goes
+on there.
 
 KUKA, "CREAD/CWRITE, Programming CREAD/CWRITE and Related Statements for KSS 8.2": ``SWRITE``,
 ``CWRITE($FCT_CALL, …, "krl_fopen" | "krl_fwriteln" | "krl_fclose", …)``.
@@ -13,26 +17,25 @@ from __future__ import annotations
 import math
 
 from ...core.errors import InputError
-from ...core.program.program import Program
+from ...core.recording import Recording, comments, listed
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
-from ...core.source.write.options import OpaqueStyle
+from ...core.source.write.options import OpaqueStyle, StructureStyle
 from .write.numbers import number
 from .write.options import KrlOptions
-from .write.writer import HEADER, TextAround, compose, source_text
+from .write.writer import HEADER, TextAround, compose, module_name, source_text
 
 SHORTEST_PERIOD = 0.012
 """s. The controller's interpolation cycle; the submit interpreter comes round no sooner."""
 LOGGER = "FLYBY_LOG"
 SAMPLER = "FLYBY_REC"
-LOG = "flyby_log.csv"
 CAPACITY = 5000
 """Samples that the arrays hold: a minute at the shortest period."""
 _TIMER = 16
 
 
-def record(program: Program, robot: Robot, period: float) -> dict[str, str]:
-    """The program's own two files, a logger with its data list, and the submit program.
+def record(recording: Recording, robot: Robot, period: float) -> dict[str, str]:
+    """The two files of the program, a logger with its data list, and the submit program.
 
     Statements that were kept as text become comments: their signals and data need not exist where
     the recording is made.
@@ -51,27 +54,77 @@ def record(program: Program, robot: Robot, period: float) -> dict[str, str]:
             "the robot sensor interface (RSI) streams the axes every 4 ms"
         )
     around = TextAround(
-        header=_instructions(period),
-        before=(f"{LOGGER}(#FB_BEGIN)",),
-        after=("WAIT SEC 0.5", f"{LOGGER}(#FB_END)"),
+        header=_instructions(recording, period),
+        main=lambda lines: _main(recording, lines),
     )
+    structure = StructureStyle.FLAT if recording.alone else StructureStyle.KEEP
+    options = KrlOptions(opaque=OpaqueStyle.COMMENT, structure=structure)
     return {
-        **compose(program, robot, KrlOptions(opaque=OpaqueStyle.COMMENT), around),
+        **compose(recording.program, robot, options, around),
         f"{LOGGER.lower()}.src": _logger(robot),
         f"{LOGGER.lower()}.dat": _data(),
         f"{SAMPLER.lower()}.sub": source_text(f"{SAMPLER}( )", _sampler(period)),
     }
 
 
-def _instructions(period: float) -> tuple[str, ...]:
-    return (
-        f"; Drives and logs the axes every {number(period)} s.",
-        f"; 1. Copy all files to KRC:\\R1\\Program; {SAMPLER.lower()}.sub to KRC:\\R1\\System.",
-        f"; 2. Start {SAMPLER.lower()}.sub in the submit interpreter, then this program, in the",
-        ";    mode and with the override ($OV_PRO) that are to be measured.",
-        f"; 3. Fetch C:\\KRC\\ROBOTER\\UserFiles\\{LOG}.",
-        f"; Longer than {number(CAPACITY * period)} s: enlarge FB_MAX, FB_T and FB_Q in the data",
-        f"; list {LOGGER.lower()}.dat. For exact 12 ms use the trace function of the controller.",
+def _main(recording: Recording, lines: list[str]) -> list[str]:
+    """One run as it is, or those from ``FB_RUN`` on, up to one that the robot is jogged to.
+
+    Args:
+        lines: the statements of the one run, or the calls of all.
+    """
+    runs = recording.runs
+    if recording.alone:
+        return _logged(runs[0].log, lines)
+    count = len(runs)
+    made = [f"IF (FB_RUN<1) OR (FB_RUN>{count}) THEN", "FB_RUN=1", "ENDIF", "FB_STAYS=FALSE"]
+    for index, (run, call) in enumerate(zip(runs, lines, strict=True), 1):
+        stays = index == count or runs[index].by_hand
+        made += [
+            f"IF (FB_RUN=={index}) AND NOT FB_STAYS THEN",
+            *_logged(run.log, [call]),
+            f"FB_RUN={index % count + 1}",
+            *(["FB_STAYS=TRUE"] if stays else []),
+            "ENDIF",
+        ]
+    return made
+
+
+def _logged(log: str, lines: list[str]) -> list[str]:
+    begin = [f'FB_NAME[]="{log}"', f"{LOGGER}(#FB_BEGIN)"]
+    return [*begin, *lines, "WAIT SEC 0.5", f"{LOGGER}(#FB_END)"]
+
+
+def steps(recording: Recording, period: float) -> list[str]:
+    """See `core.language.Recorder.steps`."""
+    several, data = not recording.alone, f"{LOGGER.lower()}.dat"
+    begins = f" It begins with the run that FB_RUN in {data} says, 1 at first." if several else ""
+    made = [
+        f"Copy all files to KRC:\\R1\\Program; {SAMPLER.lower()}.sub to KRC:\\R1\\System.",
+        f"Start {SAMPLER.lower()}.sub in the submit interpreter, then "
+        f"{module_name(recording.program)}, in the mode and with the override ($OV_PRO) that are "
+        f"to be measured: automatic, 100 %.{begins}",
+    ]
+    if recording.jogged:
+        made.append(
+            f"Before {listed(recording.jogged)} it ends: jog to where the run begins, reset the "
+            "program, start again; it goes on there. To begin elsewhere, set FB_RUN."
+        )
+    logs = "the log of each run" if several else recording.runs[0].log
+    made.append(f"Fetch {logs} from C:\\KRC\\ROBOTER\\UserFiles.")
+    return made
+
+
+def _instructions(recording: Recording, period: float) -> list[str]:
+    many = "a program" if recording.alone else f"{len(recording.runs)} runs"
+    return comments(
+        ";",
+        [
+            f"Drives {many} and logs the axes every {number(period)} s.",
+            *steps(recording, period),
+            f"A run longer than {number(CAPACITY * period)} s: enlarge FB_MAX, FB_T and FB_Q in "
+            f"{LOGGER.lower()}.dat. For exact 12 ms use the trace function of the controller.",
+        ],
     )
 
 
@@ -99,6 +152,9 @@ def _data() -> str:
         f"DEFDAT {LOGGER} PUBLIC",
         "GLOBAL ENUM FB_WHAT FB_BEGIN,FB_END",
         "DECL GLOBAL BOOL FB_ON=FALSE",
+        "DECL GLOBAL CHAR FB_NAME[64]",
+        "DECL GLOBAL INT FB_RUN=1",
+        "DECL GLOBAL BOOL FB_STAYS=FALSE",
         "DECL GLOBAL INT FB_N=0",
         f"DECL GLOBAL INT FB_MAX={CAPACITY}",
         "DECL GLOBAL REAL FB_NEXT=0.0",
@@ -133,7 +189,7 @@ def _logger(robot: Robot) -> str:
     end = [
         "FB_ON=FALSE",
         "MODE=#SYNC",
-        f'CWRITE($FCT_CALL,STAT,MODE,"krl_fopen","{LOG}","w",HANDLE)',
+        'CWRITE($FCT_CALL,STAT,MODE,"krl_fopen",FB_NAME[],"w",HANDLE)',
         f'CWRITE($FCT_CALL,STAT,MODE,"krl_fwriteln",HANDLE,"{header}")',
         *rows,
         'CWRITE($FCT_CALL,STAT,MODE,"krl_fclose",HANDLE)',

@@ -114,7 +114,7 @@ def test_sources_and_records_hold_the_same_program(name: str, tmp_path: Path) ->
         for file, text in run.sources.items():
             (tmp_path / file).write_bytes(text.encode())
         read = vendor.read_file(tmp_path / main_file(run.sources, vendor), robot=made.robot)
-        told = record(run, made.robot, "run.csv", made.period)
+        told = record(run, made.robot, "run.csv", made.period, run.sources)
         (tmp_path / "run.json").write_text(json.dumps(told), "utf-8")
         header = ",".join(["t", *(f"q{k}" for k in range(1, 7))])
         rows = np.column_stack([0.008 * np.arange(9), np.tile(run.candidate.start, (9, 1))])
@@ -150,7 +150,7 @@ def test_what_is_not_possible_is_said() -> None:
     assert "longer legs" in said["lines at 100 mm/s, posture 1, zone 150 mm"]
     assert "speed would not be reached" in said["lines at 2500 mm/s, posture 1"]
     text = page(made, "cell.toml")
-    assert "## Not possible" in text and "lines at 2500 mm/s" in text and "cell.toml" in text
+    assert "<h2>Not possible</h2>" in text and "lines at 2500 mm/s" in text and "cell.toml" in text
 
 
 def test_time_is_kept() -> None:
@@ -255,7 +255,7 @@ def test_a_robot_on_a_pedestal_has_the_same_records() -> None:
     moved = robot.with_base(Pose((0.5, -0.25, 1.0), (half, 0.0, 0.0, half)))
     made = design(vendor, Cell(moved, "abb"), plan, bare=True)
     for run in made.runs:
-        told = record(run, moved, "run.csv", made.period)
+        told = record(run, moved, "run.csv", made.period, run.sources)
         assert told["robot"] == robot.name
         ends = run.run.path.route.ends.q
         lines = [entry for entry in told["moves"] if entry["type"] == "MoveL"]

@@ -73,7 +73,7 @@ def test_every_topic_has_runs_that_keep_limits_and_say_what_they_are_for(name: s
     for topic in Topic:
         shown = [run.purpose.alternatives for run in made.runs if run.topic is topic]
         told = page(made, None)
-        assert f"### {topic}" in told and "flyby identify FOLDER" in told
+        assert f"<h3>{topic}</h3>" in told and "flyby identify FOLDER" in told
         if topic not in (Topic.SHORT_LEGS, Topic.POSTURES):  # where the joints or speeds decide
             assert any(shown)
 

@@ -159,6 +159,7 @@ FUNCTIONS = {
     "strpart": "string",
     "strlen": "num",
     "clkread": "num",
+    "dim": "num",
     "cdate": "string",
     "ctime": "string",
     "gettime": "num",

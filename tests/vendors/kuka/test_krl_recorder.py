@@ -11,10 +11,11 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import ContourFraction, Radius
+from flyby.core.recording import LOG, Recording
 from flyby.core.registry import find_vendor
 from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.kuka.record import LOG, record
+from flyby.vendors.kuka.record import record
 
 KUKA = find_vendor("kuka")
 ROBOT = KUKA.robot("kr30-3")
@@ -34,7 +35,7 @@ JOB = Program(
 
 
 def test_what_is_recorded_drives_the_same_moves(tmp_path: Path) -> None:
-    files = record(JOB, ROBOT, 0.024)
+    files = record(Recording.of(JOB), ROBOT, 0.024)
     assert set(files) == {
         *("Job.src", "Job.dat", "flyby_log.src", "flyby_log.dat", "flyby_rec.sub"),
     }
@@ -45,23 +46,23 @@ def test_what_is_recorded_drives_the_same_moves(tmp_path: Path) -> None:
 
 
 def test_the_logger_begins_before_the_first_and_ends_after_the_last_motion() -> None:
-    lines = record(JOB, ROBOT, 0.012)["Job.src"].splitlines()
+    lines = record(Recording.of(JOB), ROBOT, 0.012)["Job.src"].splitlines()
     begin, end = lines.index("FLYBY_LOG(#FB_BEGIN)"), lines.index("FLYBY_LOG(#FB_END)")
     motions = [k for k, line in enumerate(lines) if line.startswith(("PTP ", "LIN "))]
     assert begin < motions[0] and motions[-1] < end
     assert lines[end - 1].startswith("WAIT SEC"), "the advance run must not end it early"
-    assert "; $OUT[5]=TRUE" in lines
+    assert lines[begin - 1] == f'FB_NAME[]="{LOG}"' and "; $OUT[5]=TRUE" in lines
 
 
 def test_the_sampler_takes_the_measured_axes_at_the_period() -> None:
-    sampler = record(JOB, ROBOT, 0.036)["flyby_rec.sub"]
+    sampler = record(Recording.of(JOB), ROBOT, 0.036)["flyby_rec.sub"]
     assert "FB_Q[FB_N]=$AXIS_ACT_MEAS" in sampler and "FB_NEXT=FB_NEXT+36" in sampler
-    logger = record(JOB, ROBOT, 0.036)["flyby_log.src"]
-    assert f'"krl_fopen","{LOG}","w"' in logger and '"t,q1,q2,q3,q4,q5,q6"' in logger
+    logger = record(Recording.of(JOB), ROBOT, 0.036)["flyby_log.src"]
+    assert '"krl_fopen",FB_NAME[],"w"' in logger and '"t,q1,q2,q3,q4,q5,q6"' in logger
     assert f"FB_Q[I].A6*{math.radians(1):.10f}" in logger
 
 
 @pytest.mark.parametrize("period", [0.0, 0.004, -1.0, math.nan, math.inf])
 def test_periods_below_the_cycle_are_refused(period: float) -> None:
     with pytest.raises(InputError, match=r"0\.012 s or more"):
-        record(JOB, ROBOT, period)
+        record(Recording.of(JOB), ROBOT, period)

@@ -13,6 +13,7 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool
 from flyby.core.program.zone import Radius
+from flyby.core.recording import Recording
 from flyby.core.registry import find_vendor
 from flyby.core.source.patch.edits import difference
 from flyby.core.spatial.pose import Pose
@@ -36,12 +37,12 @@ JOB = Program(
 
 
 def lines(period: float = 0.008, program: Program = JOB) -> list[str]:
-    (text,) = record(program, UR5E, period).values()
+    (text,) = record(Recording.of(program), UR5E, period).values()
     return [line.strip() for line in text.splitlines()]
 
 
 def test_what_is_recorded_drives_the_same_moves(tmp_path: Path) -> None:
-    ((name, text),) = record(JOB, UR5E, 0.008).items()
+    ((name, text),) = record(Recording.of(JOB), UR5E, 0.008).items()
     assert name == "job.script" and text.isascii()
     path = tmp_path / name
     path.write_text(text, "utf-8")
@@ -82,7 +83,7 @@ def test_a_sample_is_time_and_joints_with_commas() -> None:
 def test_the_period_is_counted_in_cycles_of_the_controller(
     robot: object, period: float, cycles: int, cycle: str
 ) -> None:
-    (text,) = record(JOB, robot, period).values()  # type: ignore[arg-type]
+    (text,) = record(Recording.of(JOB), robot, period).values()  # type: ignore[arg-type]
     assert f"global flyby_cycles = {cycles}\n" in text
     assert f"to_str(flyby_count * {cycle})" in text
     assert "while flyby_k < flyby_cycles:\n        sync()" in text
@@ -91,9 +92,9 @@ def test_the_period_is_counted_in_cycles_of_the_controller(
 @pytest.mark.parametrize("period", [0.0, -0.002, 0.003, 0.001, math.nan, math.inf, 1e-9])
 def test_other_periods_are_refused(period: float) -> None:
     with pytest.raises(InputError, match=r"ur5e runs in cycles of 0\.002 s"):
-        record(JOB, UR5E, period)
+        record(Recording.of(JOB), UR5E, period)
     with pytest.raises(InputError, match=r"ur5 runs in cycles of 0\.008 s"):
-        record(JOB, UR5, 0.004)
+        record(Recording.of(JOB), UR5, 0.004)
 
 
 def test_names_of_the_program_give_way_to_those_of_the_recorder() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from ....core.program.move import Move, MoveC, Opaque, Wait
@@ -31,14 +31,13 @@ class TextAround:
     """What stands in a module beside the program itself; lines without their indentation.
 
     Args:
-        before, after: instructions of the entry routine, before and after the program's.
+        main: the instructions of the entry routine, of the program's own.
         names: that these lines declare, and the program's data must not have.
     """
 
     header: tuple[str, ...] = ()
     data: tuple[str, ...] = ()
-    before: tuple[str, ...] = ()
-    after: tuple[str, ...] = ()
+    main: Callable[[list[str]], list[str]] = list
     routines: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
 
@@ -64,7 +63,7 @@ def write(program: Program, options: RapidOptions, around: TextAround = TextArou
     def texts(lines: list[Line]) -> list[str]:
         return ["".join(p if isinstance(p, str) else names[p] for p in line) for line in lines]
 
-    main = [*around.before, *texts(lines), *around.after]
+    main = around.main(texts(lines))
     routines = [
         line
         for name, body in structure.routines.items()

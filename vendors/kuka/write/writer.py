@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ....core.errors import InputError
@@ -52,11 +52,14 @@ EXTERNALS = (
 
 @dataclass(frozen=True, slots=True)
 class TextAround:
-    """What stands round the statements of a program."""
+    """What stands round the statements of a program.
+
+    Args:
+        main: the lines of the program's own routine, of its statements.
+    """
 
     header: Sequence[str] = ()
-    before: Sequence[str] = ()
-    after: Sequence[str] = ()
+    main: Callable[[list[str]], list[str]] = list
 
 
 def write(program: Program, robot: Robot, options: Mapping[str, str]) -> dict[str, str]:
@@ -99,7 +102,7 @@ def compose(
         return ["".join(parts) for parts in named]
 
     declared = structure.declared()
-    whole = [*around.header, *declared, *INI, "", *around.before, *texts(lines), *around.after]
+    whole = [*around.header, *declared, *INI, "", *around.main(texts(lines))]
     further = [
         line
         for name, body in structure.routines.items()
