@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from flyby.tasks.pareto import pareto
     from flyby.tasks.read import read
     from flyby.tasks.record import record
+    from flyby.tasks.station.check import station_check
     from flyby.tasks.station.station import station
+    from flyby.tasks.station.zones import station_zones
     from flyby.tasks.translate import translate
     from flyby.tasks.tune import tune
     from flyby.tasks.write import patch, write
@@ -60,6 +62,8 @@ __all__ = [
     "robots",
     "show",
     "station",
+    "station_check",
+    "station_zones",
     "translate",
     "tune",
     "vendors",
@@ -77,6 +81,8 @@ _ELSEWHERE = {
     "robots": "catalogue",
     "show": "pages.show",
     "station": "station.station",
+    "station_check": "station.check",
+    "station_zones": "station.zones",
 }
 """Files of `flyby.tasks` that are not called as what they hold."""
 

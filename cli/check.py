@@ -13,7 +13,9 @@ from ..tasks.files.source_places import place_json
 from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of, setup_of_program
-from .output.console import print_json, print_rich, print_table, progress
+from ..tasks.station.check import StationCheckOptions, station_check_with
+from .changed_station import is_station, refuse_given
+from .output.console import fail, print_json, print_rich, print_table, progress
 from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -33,8 +35,15 @@ def check(
 ) -> None:
     """Look for what goes wrong, or other than it seems: zones, limits, configurations, speeds.
 
-    The exit status is 1 if there is an error among the findings.
+    Of a station file all programs are checked, by themselves and beside each other. The exit status
+    is 1 if there is an error among the findings.
     """
+    if is_station(program):
+        refuse_given([source, options], ())
+        if report is not None:
+            raise OptionError("--report does not go with a station: 'flyby station' makes its page")
+        _station(program, json)
+        return
     check_page(report, [program, *source.inputs()], force)
     with progress("checking the program") as say:
         read, robot, found = _findings(program, source, options)
@@ -47,6 +56,24 @@ def check(
         _tell(program, found)
         for path in written:
             print_rich(f"wrote {path}")
+    if found.errors:
+        raise typer.Exit(1)
+
+
+def _station(file: Path, json: bool) -> None:
+    """All programs of a station."""
+    with progress("checking the station") as say:
+        found = station_check_with(file, StationCheckOptions(report=say))
+    if json:
+        robots = {name: [_json(f) for f in one] for name, one in found.robots.items()}
+        print_json({"station": found.driven.as_json(), "findings": robots})
+    else:
+        for name, one in found.robots.items():
+            _tell(Path(found.driven.station.members[name].program.name), one)
+        for finding in found:
+            fail(finding)
+        keeps = "its robots are proven to keep clear of each other"
+        print_rich(f"{file}: {'see above' if found.errors else keeps}")
     if found.errors:
         raise typer.Exit(1)
 

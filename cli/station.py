@@ -32,7 +32,8 @@ def station(
 ) -> None:
     """Run several robots on one clock: who waits for whom, and whether they keep clear.
 
-    The exit status is 1 if the station never ends, or is not proven to keep its clearance in time.
+    The exit status is 1 if the station never ends, or is proven to keep its clearance neither in
+    time nor in every order that the signals allow.
     """
     if plot is not None:
         picture_kind(plot, "--plot")

@@ -17,6 +17,7 @@ from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
 from ..tasks.zones import ZoneOptions, zones_with
+from .changed_station import changed_station, is_station, refuse_given
 from .output.console import print_json, print_table, progress
 from .output.delivery import deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution
@@ -64,9 +65,13 @@ def zones(
 ) -> None:
     """Make zones as large as they can be without collision, and prove the new program.
 
-    The exit status is 1 if the new program is not proven to keep its clearance.
+    Of a station file the programs of all robots change, and are proven beside each other. The exit
+    status is 1 if a new program is not proven to keep its clearance.
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
+    if is_station(program):
+        _station(program, source, options, places, json)
+        return
     places.check()
     check_page(report, places.inputs, force)
     if plot is not None:
@@ -87,6 +92,20 @@ def zones(
     else:
         _tell(program, made, cell, delivery.written)
     delivery.end(told=not json)
+
+
+def _station(
+    file: Path, source: SourceOptions, options: ZoneOptions, places: FilePlaces, json: bool
+) -> None:
+    """Zones of all robots of a station."""
+    from ..tasks.station.zones import StationZoneOptions, station_zones_with
+
+    taken = ("keep", "free", "predefined", "own")
+    refuse_given([source, options], taken)
+    wanted = StationZoneOptions(**{name: getattr(options, name) for name in taken})
+    changed_station(
+        file, lambda say: station_zones_with(file, replace(wanted, report=say)), places, json
+    )
 
 
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> None:

@@ -15,6 +15,7 @@ from .setup import CellOptions, controller_of, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
+    from ..problems.improve.solve_round_verify import Beside
     from ..problems.improve.zones.maximize import ZoneSolution
 
 
@@ -45,6 +46,19 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
         InputError: naming the option.
         MotionError: the program cannot be driven, or collides as it is.
     """
+    return zones_beside(program, options, None)
+
+
+zones = by_keywords(zones_with, ZoneOptions)
+
+
+def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) -> ZoneSolution:
+    """The same beside other robots.
+
+    Args:
+        program, options: see `zones_with`.
+        beside: what the other robots say of a program; None where there are none.
+    """
     from ..core.program.zone import Fine
     from ..problems.improve.zones.maximize import maximize_zones
     from ..problems.improve.zones.options import ZoneTask
@@ -62,6 +76,7 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
         apart=options.own,
         rounding=rounding_of(setup.vendor, options.predefined),
         start=start_of(program),
+        beside=beside,
     )
     texts = ProgramTexts(setup, program, own=options.own)
     controller = controller_of(program, setup)
@@ -69,6 +84,3 @@ def zones_with(program: Program, options: ZoneOptions) -> ZoneSolution:
     able = {i for i, move in enumerate(program.moves) if not isinstance(move.zone, Fine)}
     able |= set(freed_stops(program, options.free, ())) if ALL in options.free else set()
     return delivered(made, texts, setup, idle_kept(program, options.keep, able, path=False))
-
-
-zones = by_keywords(zones_with, ZoneOptions)

@@ -14,7 +14,7 @@ from ..collision.mutual.robot_motion import RobotMotion
 from .actions import Action
 from .clock import Schedule, StationRun
 from .orders import Orders, sections_mask
-from .station import RobotStation
+from .station import RobotStation, StationRobot
 
 _SAMPLED = (0.05, 0.002)
 """s between the instants at which the least distance is looked for, and round the least."""
@@ -51,33 +51,43 @@ class StationProver:
 
     Args:
         station: the robots.
-        actions: of their programs.
+        actions: of their programs that bear on others.
+        before: a prover of the same station, whose motions are taken over where the run is the
+            same.
     """
 
-    def __init__(self, station: RobotStation, actions: Mapping[str, Sequence[Action]]) -> None:
+    def __init__(
+        self,
+        station: RobotStation,
+        actions: Mapping[str, Sequence[Action]],
+        before: StationProver | None = None,
+    ) -> None:
         self._station, self._actions = station, actions
-        known = {
-            name: {obstacle.name for obstacle in member.cell.obstacles}
-            for name, member in station.members.items()
-        }
-        lone = {
-            name: sorted(
-                {thing for other in known if other != name for thing in own - known[other]}
-            )
-            for name, own in known.items()
-        }
-        self._motions = {
-            name: RobotMotion(
-                name,
-                member.controller,
-                member.run,
-                member.cell,
-                lone[name],
-                any_speed=True,
-            )
+        known: dict[str, RobotMotion] = {} if before is None else before._motions
+        self._motions: dict[str, RobotMotion] = {
+            name: known[name]
+            if name in known and known[name].run is member.run
+            else self._swept(member)
             for name, member in station.members.items()
         }
         self._provers: dict[tuple[str, str], PairProver] = {}
+        if before is not None:
+            for pair, prover in before._provers.items():
+                if prover.one is self._motions[pair[0]] and prover.other is self._motions[pair[1]]:
+                    self._provers[pair] = prover
+
+    def _swept(self, member: StationRobot) -> RobotMotion:
+        """With the obstacles that some other robot has not in its own cell."""
+        others = [
+            {obstacle.name for obstacle in other.cell.obstacles}
+            for other in self._station.members.values()
+            if other is not member
+        ]
+        own = {obstacle.name for obstacle in member.cell.obstacles}
+        lone = sorted({thing for known in others for thing in own - known})
+        return RobotMotion(
+            member.name, member.controller, member.run, member.cell, lone, any_speed=True
+        )
 
     def prover(self, one: str, other: str) -> PairProver:
         """Of two robots."""

@@ -7,6 +7,7 @@ margin, a part put back), until a program holds or none is left.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -19,6 +20,9 @@ from ...core.program.program import Program
 from ...core.program.target import JointTarget
 from .start_check import check_start
 
+Beside = Callable[[Run], Certificate | None]
+"""Of a driven program that keeps clear of its own cell: why it must not run beside the programs of
+other robots; None if it may."""
 RESOLUTION = 1e-5
 """m to which the clearance that there is is proven, for the table before and after."""
 
@@ -35,6 +39,7 @@ class ProgramFeasibility:
         start: where the robot stands; None for the program's own start.
         resolution: m to which the clearance that there is is proven; None to prove just the one
             to keep, which is quicker.
+        beside: what other robots say of it; None where there are none.
     """
 
     controller: Controller
@@ -43,6 +48,7 @@ class ProgramFeasibility:
     residual: float = 0.0
     start: JointTarget | None = None
     resolution: float | None = RESOLUTION
+    beside: Beside | None = None
 
     def given(self, program: Program) -> tuple[Run, Certificate | None]:
         """The program that is to be improved, driven and proven.
@@ -68,7 +74,7 @@ class ProgramFeasibility:
         """Of a driven program; None without a cell."""
         if self.scenes is None:
             return None
-        return certify(
+        made = certify(
             self.controller,
             run,
             self.scenes,
@@ -76,6 +82,9 @@ class ProgramFeasibility:
             self.residual,
             resolution=self.resolution,
         )
+        if self.beside is None or not made.proven:
+            return made
+        return self.beside(run) or made
 
 
 class Improvement(Protocol):

@@ -15,6 +15,7 @@ from ...core.notebook import page, table
 from ...core.station.actions import Action
 from ...core.station.clearances import PairClearance
 from ...core.station.clock import Schedule, Spell, StationRun
+from ...core.station.conflict_words import conflict_said
 from ...core.station.deadlock import Deadlock
 from ...core.station.interlocks import Saving
 from ...core.station.orders import Orders
@@ -96,8 +97,12 @@ class DrivenStation:
 
     @property
     def clear(self) -> bool:
-        """Whether all robots are proven to keep clear of each other in time."""
-        return all(pair.in_time.proven for pair in self.clearances)
+        """Whether all robots are proven to keep clear of each other: in time, or in every order
+        that the signals allow, which no robot that is early or late can leave."""
+        return all(map(self._keeps, self.clearances))
+
+    def _keeps(self, pair: PairClearance) -> bool:
+        return pair.in_time.proven or (pair.safe and pair.least >= self.station.clearance)
 
     @property
     def may_lock(self) -> bool:
@@ -157,31 +162,12 @@ class DrivenStation:
 
     def conflict_said(self, pair: PairClearance, conflict: Conflict) -> str:
         """A conflict in a sentence, with both program lines."""
-        places = [
-            self._line(name, move) for name, move in zip(pair.robots, conflict.moves, strict=True)
-        ]
-        bodies = [f"{name}'s {b}" for name, b in zip(pair.robots, conflict.pair, strict=True)]
-        far = (
-            "are not proven to keep clear"
-            if conflict.distance is None
-            else f"come to {1e3 * conflict.distance:.1f} mm"
-            if conflict.distance > 0
-            else "collide"
-        )
         when = []
         for name, own in zip(pair.robots, conflict.times, strict=True):
             clocked = self.run.schedules[name].clocked(np.array([[own, own]]))[0, 0]
             when.append(f"{name} at {clocked:.3f} s")
-        why = _WHY.get(conflict.cause, f" ({conflict.cause})")
-        return (
-            f"{bodies[0]} and {bodies[1]} {far}{why}: {places[0]} and {places[1]} "
-            f"({', '.join(when)} of the station)"
-        )
-
-    def _line(self, name: str, move: int) -> str:
-        span = self.station.members[name].program.moves[move].statement
-        where = "" if span is None else f" ({span.file}:{span.line})"
-        return f"{name}'s move {move + 1}{where}"
+        said = conflict_said(self.station, pair.robots, conflict)
+        return f"{said} ({', '.join(when)} of the station)"
 
     def saving_rows(self) -> list[tuple[str, ...]]:
         """A line a change of an interlock."""
@@ -202,6 +188,8 @@ class DrivenStation:
         """What is wrong, in sentences."""
         found = [] if self.deadlock is None else [str(self.deadlock)]
         for pair in self.clearances:
+            if self._keeps(pair):
+                continue
             found += [self.conflict_said(pair, c) for c in pair.in_time.conflicts.values()]
             if not pair.in_time.proven and pair.least < 0.0:
                 both = " and ".join(pair.robots)
@@ -307,13 +295,6 @@ class DrivenStation:
         if self.clearances:
             parts.append(table(PAIRS, self.pair_rows()))
         return page(repr(self)[1:-1], *parts, notes=[*self.findings(), *self.notes])
-
-
-_WHY = {
-    ConflictCause.NEAR: "",
-    ConflictCause.DEVIATION: ", too little for what smoothing in time may add",
-}
-"""What is said of a conflict's cause behind its distance."""
 
 
 def _nearness(conflict: Conflict) -> float:

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from ...core.station.interlocks import Saving
     from ..results.stations import DrivenStation
 
-_JITTER = 50e-3
+JITTER = 50e-3
+"""s."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +25,7 @@ class StationOptions(TaskOptions):
     """What is asked of a station."""
 
     jitter: float = number(
-        _JITTER,
+        JITTER,
         "{unit} by which each robot may be early or late when clearances are proven in time.",
         MILLISECONDS,
         Extent(0.0, 10_000.0),

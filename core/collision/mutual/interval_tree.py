@@ -80,6 +80,7 @@ def near_pairs(
     pairs: IntArray,
     within: float,
     apart_in_time: float,
+    most: int,
 ) -> IntArray:
     """Pairs of intervals and bodies whose boxes are nearer than ``within`` at one time.
 
@@ -88,6 +89,7 @@ def near_pairs(
         pairs: (P, 2), bodies of the one and of the other.
         within: m.
         apart_in_time: s by which the two may be off against each other; infinite for at any time.
+        most: how many are looked for.
 
     Returns:
         (K, 3): interval of the one, interval of the other, row of ``pairs``.
@@ -116,8 +118,10 @@ def near_pairs(
                 continue
             m, n = one.stop[i] - one.first[i], other.stop[j] - other.first[j]
             if m == 1 and n == 1:
+                if count == most:
+                    return found[:count]
                 if count == found.shape[0]:
-                    wider = np.empty((2 * count, 3), dtype=np.int64)
+                    wider = np.empty((min(2 * count, most), 3), dtype=np.int64)
                     wider[:count] = found
                     found = wider
                 found[count, 0], found[count, 1], found[count, 2] = one.first[i], other.first[j], k

@@ -35,6 +35,8 @@ _LOCATED = 2e-3
 _STALLED = 1e-4
 """m of motion below which nothing is halved any more."""
 _CHUNK = 512
+_MOST_NEAR = 8_000_000
+"""Pairs of intervals and bodies that are looked at first, at most."""
 BUDGET = 20_000_000
 
 
@@ -274,7 +276,13 @@ class _Search:
             interval_tree(m.side.swept, m.first, clock(m.own_time[: m.first]))
             for m, clock in zip((prover.one, prover.other), meetings.clocks, strict=True)
         ]
-        items = near_pairs(*trees, prover.pairs, self._wanted, meetings.apart)
+        most = min(self._left, _MOST_NEAR)
+        items = near_pairs(*trees, prover.pairs, self._wanted, meetings.apart, most)
+        if len(items) == most:
+            # What comes behind these is not known.
+            unknown, every = PairBounds.unknown(1), np.ones(1, dtype=bool)
+            self._note(items[-1:], unknown, every, ConflictCause.EXHAUSTED)
+            return items[:0]
         return self._meeting(items)
 
     def _meeting(self, items: IntArray) -> IntArray:

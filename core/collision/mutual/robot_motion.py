@@ -28,6 +28,9 @@ from .swept_intervals import SweptIntervals, sweep_intervals
 
 _STRIDE = 0.1
 """m that a body moves at most on the intervals which everything begins with."""
+_ANYWHERE = 1.0
+"""m of deviation from the path from which on a body may be anywhere, and nothing is gained by
+halves: bounds are that large where a motion turns back on itself within a zone."""
 _NARROWEST = 1e-9
 """Share of a piece below which an interval is not halved any more."""
 
@@ -115,6 +118,7 @@ class RobotMotion:
             wide = ~(swept.motion.max(axis=1) <= _STRIDE) & ~self._narrow(intervals)
             # Deviations do not shrink with the interval.
             wide &= ~((swept.motion - swept.off).max(axis=1) <= 0.5 * _STRIDE)
+            wide &= swept.off.max(axis=1) < _ANYWHERE
             done.append((_chosen(intervals, ~wide), swept.chosen(~wide)))
             intervals = self._enclosure.halves(intervals, np.flatnonzero(wide))
         rows = _joined([part for part, _ in done])

@@ -167,7 +167,12 @@ class _Optimization:
         """What the whole program has to stand."""
         task = self.task
         return ProgramFeasibility(
-            self.controller, self._scenes, self._clearance, task.residual, task.start
+            self.controller,
+            self._scenes,
+            self._clearance,
+            task.residual,
+            task.start,
+            beside=task.beside,
         )
 
     def _improved(
@@ -187,7 +192,8 @@ class _Optimization:
         blocks = drivable(self.controller, run.path, cut_blocks, notes)
         if not blocks:
             return None
-        shared = Shared(self.controller, self._scenes, task, effort, self._clearance, blocks)
+        alone = replace(task, beside=None)
+        shared = Shared(self.controller, self._scenes, alone, effort, self._clearance, blocks)
         best, ended = improve(shared, self.report)
         self.ended = self.ended or ended
         chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in best]

@@ -14,6 +14,7 @@ from ....core.program.target import JointTarget
 from ....core.program.zone import Radius, VendorZone
 from ....core.robot.model import Robot
 from ..rounding import Rounding
+from ..solve_round_verify import Beside
 from ..zones.sizes import GRADED
 from .point_limits import FREE, Fixed, Free, PointBox, PointCone, PointLimit
 
@@ -65,6 +66,7 @@ class WaypointTask:
             points are refined once more when zones have been chosen.
         start: where the robot stands; None for the program's own start.
         freedom: what may change.
+        beside: what other robots say of a program; None where there are none.
 
     Raises:
         InputError: a number out of its range.
@@ -85,6 +87,7 @@ class WaypointTask:
     rounding: Rounding = _ROUNDING
     start: JointTarget | None = None
     freedom: Freedom = Freedom.WAYPOINTS_AND_ZONES
+    beside: Beside | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.time_weight <= 1.0:

@@ -49,6 +49,7 @@ def zones_alone(
         kept=[i for i in range(len(base.moves)) if i not in changeable],
         rounding=task.rounding,
         start=task.start,
+        beside=task.beside,
     )
     try:
         made = maximize_zones(controller, program, cell, wanted, read_back)

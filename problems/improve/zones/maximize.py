@@ -33,7 +33,7 @@ from .neighbourhood import Neighbourhoods
 from .options import ZoneTask
 from .points import Points, find_points
 from .predefined import choices, choose
-from .repair import Repair, is_slower
+from .repair import BESIDE, SMALLER, Repair, is_slower
 from .rules import Rules, passable
 from .search import Asking, Sides, SizeBracket, SizeSearch
 from .settling import settle, with_zones
@@ -100,7 +100,12 @@ class _Maximization:
         self._wanted = cell.clearance if options.clearance is None else options.clearance
         self._scenes: SceneOf = scenes_of(cell)
         self._feasibility = ProgramFeasibility(
-            controller, self._scenes, self._wanted, options.residual, options.start
+            controller,
+            self._scenes,
+            self._wanted,
+            options.residual,
+            options.start,
+            beside=options.beside,
         )
 
     def run(self, read_back: ReadBack) -> ZoneSolution:
@@ -114,7 +119,8 @@ class _Maximization:
         before, proof = self._feasibility.given(program)
         found, zones = self._grown(points, before)
         self._tell("certifying the new program")
-        repair = Repair(points, program, zones, options.rounding)
+        smaller = SMALLER if options.beside is None else BESIDE
+        repair = Repair(points, program, zones, options.rounding, smaller)
         proven = proof is not None and proof.proven
         larger = _LargerZones(repair, before, proven, read_back, dict.fromkeys(points.notes))
         after, certificate = solve_round_verify(self._feasibility, larger) or (before, proof)

@@ -10,6 +10,7 @@ from ....core.errors import InputError
 from ....core.program.target import JointTarget
 from ....core.program.zone import Radius, VendorZone
 from ..rounding import Rounding
+from ..solve_round_verify import Beside
 from .search import TOLERANCE
 from .sizes import GRADED
 
@@ -31,6 +32,7 @@ class ZoneTask:
             predefined ones.
         tolerance: share of the first failing size by which a zone may stay below it.
         start: where the robot stands; None for the program's own start.
+        beside: what other robots say of a program; None where there are none.
 
     Raises:
         InputError: a number is out of range.
@@ -45,6 +47,7 @@ class ZoneTask:
     rounding: Rounding = _ROUNDING
     tolerance: float = TOLERANCE
     start: JointTarget | None = None
+    beside: Beside | None = None
 
     def __post_init__(self) -> None:
         for name in ("clearance", "residual"):

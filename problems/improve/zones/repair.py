@@ -17,6 +17,8 @@ from .sizes import Growth, size_of
 
 SMALLER = 0.99
 """Factor by which a zone is made smaller that the certificate is refused for."""
+BESIDE = 0.8
+"""The same where other robots refuse it: nothing has been searched with them."""
 PATIENCE = 4
 """How often, before it is put back to what it was."""
 MOST = 40
@@ -40,12 +42,18 @@ class Repair:
         program: as it was given.
         zones: the new zones by corner.
         rounding: of smaller ones.
+        smaller: factor by which zones become smaller, more with every time.
     """
 
     def __init__(
-        self, points: Points, program: Program, zones: Mapping[int, Zone], rounding: Rounding
+        self,
+        points: Points,
+        program: Program,
+        zones: Mapping[int, Zone],
+        rounding: Rounding,
+        smaller: float = SMALLER,
     ) -> None:
-        self._points = points
+        self._points, self._factor = points, smaller
         self.given = program
         self._old = {i: program.moves[points.move[i]].zone for i in zones}
         self._group = {i: members for members in points.groups for i in members}
@@ -146,7 +154,7 @@ class Repair:
         if tried > PATIENCE or isinstance(zone, Fine):
             return self._old[corner]
         growth = Growth.of(zone)
-        smaller = growth.rounded(size_of(zone) * SMALLER**tried, self._rounding)
+        smaller = growth.rounded(size_of(zone) * self._factor**tried, self._rounding)
         return self._old[corner] if isinstance(smaller, Fine) else smaller
 
     def _change(self, corners: Iterable[int], new: Callable[[int], Zone]) -> bool:

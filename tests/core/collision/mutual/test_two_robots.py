@@ -19,7 +19,7 @@ from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
-from flyby.core.program.zone import Radius
+from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 
@@ -152,3 +152,23 @@ def test_halves_cover_the_whole(rows: int) -> None:
         own = moving.own_time[[k, half, half + 1]]
         assert own[1, 0] <= own[0, 0] + 1e-9 or math.isinf(own[0, 0])
         assert (moving.side.swept.motion[half] <= moving.side.swept.motion[k] + 1e-6).all()
+
+
+def test_a_motion_that_turns_back_within_a_zone_is_not_cut_to_pieces() -> None:
+    """Its deviation has no useful bound: halves of it tell no more than the whole."""
+    robot = find_robot("abb/irb120-3-058")
+    there, back = JointTarget((0.3, 0.2, 0.0, 0.0, 0.5, 0.0)), JointTarget((0.0,) * 4 + (0.5, 0.0))
+    speed, zone = Speed(tcp=0.5), Radius(0.001, 0.001, 0.001)
+    moves = (MoveJ(there, speed, zone), MoveJ(back, speed, FINE))
+    controller = Controller(find_vendor("abb"), robot)
+    run = controller.run(Program(moves, start=back), None, None)
+    made = RobotMotion("a", controller, run, bare_cell(robot, "abb", floor=False), any_speed=True)
+    assert made.first < 2000
+
+
+def test_more_near_pairs_than_are_looked_at_are_no_proof(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flyby.core.collision.mutual.pair_proof._MOST_NEAR", 5)
+    prover = PairProver(
+        motion("a", Pose((0.0, 0.0, 0.0)), 3), motion("b", Pose((0.5, 0.0, 0.0)), 4)
+    )
+    assert not prover.prove(CLEARANCE, Meetings.at_any_time()).proven

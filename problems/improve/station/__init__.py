@@ -1,0 +1,1 @@
+"""Improvements of a program that runs beside those of other robots."""

@@ -1,0 +1,256 @@
+"""What a station has to stand while the programs of its robots are improved, one by one.
+
+A changed program may run beside the others if the station ends, does not take longer, and is proven
+as well as before: two robots that were kept apart by their interlocks, or needed none, still are;
+two that only their times kept apart are still apart in time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from itertools import combinations
+
+from ....core.collision.mutual.pair_proof import (
+    Conflict,
+    ConflictCause,
+    Meetings,
+    PairVerdict,
+)
+from ....core.collision.proof.verdict import Certificate, Verdict
+from ....core.dialect import SignalWords
+from ....core.errors import InputError, MotionError
+from ....core.motion.emulator.run import Run
+from ....core.station.actions import Action, actions_of
+from ....core.station.awaited import bearing
+from ....core.station.clearances import StationProver
+from ....core.station.clock import StationClock, StationRun
+from ....core.station.conflict_words import conflict_said
+from ....core.station.deadlock import deadlock
+from ....core.station.orders import Orders, explore
+from ....core.station.station import RobotStation
+from ..solve_round_verify import Beside
+
+_LATER = 1e-9
+"""Share of the station time that does not count."""
+Pair = tuple[str, str]
+
+
+class _Keeping(Enum):
+    """What keeps two robots apart."""
+
+    SPACE = auto()
+    """They share none."""
+    ORDERS = auto()
+    """Their interlocks."""
+    TIMES = auto()
+    """Only their times."""
+
+
+@dataclass(frozen=True)
+class StationState:
+    """A station with its programs as they are at one time of an improvement.
+
+    Args:
+        station: the robots.
+        actions: of their programs.
+        run: on one clock.
+        orders: that the signals allow, of the actions that bear on others; None where these are
+            not known.
+        prover: of the clearances.
+    """
+
+    station: RobotStation
+    actions: Mapping[str, tuple[Action, ...]]
+    run: StationRun
+    orders: Orders | None
+    prover: StationProver
+
+    @property
+    def duration(self) -> float:
+        """s, until the last robot has ended."""
+        return self.run.duration
+
+    @property
+    def ordered(self) -> dict[str, tuple[Action, ...]]:
+        """The actions that bear on others."""
+        return bearing(self.station, self.actions)
+
+
+class StationFeasibility:
+    """A station whose robots' programs change one by one.
+
+    Args:
+        station: the robots with their programs as given.
+        words: how each robot's language says what it does with signals.
+        known: whether all of that is known; else nothing is said about interlocks.
+        jitter: s by which each robot may be early or late where times keep two apart.
+        say: told what is being done.
+
+    Attributes:
+        state: with all changes that were taken over.
+        given: as it was given.
+
+    Raises:
+        MotionError: two robots are not proven to keep clear, or the station never ends.
+    """
+
+    def __init__(
+        self,
+        station: RobotStation,
+        words: Mapping[str, SignalWords | None],
+        known: bool,
+        jitter: float,
+        say: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self._words, self._known, self._jitter = words, known, jitter
+        self.given = self.state = self._state(station, None)
+        self._kept: dict[Pair, _Keeping] = {}
+        never = self._never_ends(self.state)
+        if never is not None:
+            raise MotionError(f"{never}: nothing can be improved before")
+        for pair in combinations(station.members, 2):
+            say(f"proving that {pair[0]} and {pair[1]} keep clear of each other")
+            self._kept[pair] = self._kept_by(pair)
+
+    def beside(self, name: str) -> Beside:
+        """What the other robots, as they are now, say of programs of one of them."""
+
+        def said(run: Run) -> Certificate | None:
+            return self._refused(name, self._with(name, run))
+
+        return said
+
+    def take(self, name: str, run: Run) -> bool:
+        """Take a program over, if it may run beside the others.
+
+        Args:
+            name: of the robot.
+            run: the program as driven.
+
+        Returns:
+            whether it was taken over.
+        """
+        state = self._with(name, run)
+        if self._refused(name, state) is not None:
+            return False
+        self.state = state
+        return True
+
+    def _with(self, name: str, run: Run) -> StationState:
+        members = dict(self.state.station.members)
+        members[name] = replace(members[name], program=run.program, run=run)
+        return self._state(replace(self.state.station, members=members), self.state)
+
+    def _state(self, station: RobotStation, before: StationState | None) -> StationState:
+        actions = {
+            name: before.actions[name]
+            if before is not None and before.station.members[name].run is member.run
+            else actions_of(member.run, self._words[name])
+            for name, member in station.members.items()
+        }
+        ordered = bearing(station, actions)
+        orders = None
+        if self._known:
+            try:
+                orders = explore(station, ordered)
+            except InputError:
+                self._known = False
+        run = StationClock(station, actions).run()
+        prover = StationProver(station, ordered, None if before is None else before.prover)
+        return StationState(station, actions, run, orders, prover)
+
+    def _never_ends(self, state: StationState) -> str | None:
+        """Why a station never ends; None if it does."""
+        clock = StationClock(state.station, state.actions)
+        stuck = deadlock(state.station, state.run, state.actions, clock)
+        return None if stuck is None else str(stuck)
+
+    def _kept_by(self, pair: Pair) -> _Keeping:
+        """What keeps two robots apart as they are given."""
+        for keeping in (_Keeping.SPACE, _Keeping.ORDERS, _Keeping.TIMES):
+            verdict = self._verdict(self.state, pair, keeping)
+            if verdict is not None and verdict.proven:
+                return keeping
+        assert verdict is not None
+        worst = min(verdict.conflicts.values(), key=lambda conflict: _distance(conflict))
+        said = conflict_said(self.state.station, pair, worst)
+        raise MotionError(
+            f"the robots do not keep clear of each other as they are: {said}; mend that first"
+        )
+
+    def _refused(self, name: str, state: StationState) -> Certificate | None:
+        """Why a state is not taken over, as a certificate of one robot's run; None if it is."""
+        never = self._never_ends(state)
+        if never is not None:
+            return _refusal(f"beside the other robots {never}")
+        before = self.state
+        if _may_lock(state) and not _may_lock(before):
+            return _refusal("beside the other robots the signals would allow a deadlock")
+        if state.duration > before.duration * (1.0 + _LATER):
+            return _refusal("the station would take longer")
+        for pair in self._kept:
+            if name in pair:
+                conflict = self._conflict(state, pair)
+                if conflict is not None:
+                    return self._certificate(state, name, pair, conflict)
+        return None
+
+    def _conflict(self, state: StationState, pair: Pair) -> Conflict | None:
+        """The worst of two robots that are not kept apart as well as before."""
+        keeping = self._kept[pair]
+        verdict = self._verdict(state, pair, keeping)
+        if verdict is not None and not verdict.proven and keeping is _Keeping.SPACE:
+            verdict = self._verdict(state, pair, _Keeping.ORDERS) or verdict
+        if verdict is None or verdict.proven:
+            return None
+        return min(verdict.conflicts.values(), key=_distance)
+
+    def _verdict(self, state: StationState, pair: Pair, keeping: _Keeping) -> PairVerdict | None:
+        """Whether two robots are kept apart in one way; None where that cannot be said."""
+        prover, clearance = state.prover.prover(*pair), state.station.clearance
+        match keeping:
+            case _Keeping.SPACE:
+                return prover.prove(clearance, Meetings.at_any_time())
+            case _Keeping.ORDERS:
+                if state.orders is None:
+                    return None
+                return state.prover.interlocked(*pair, state.orders, state.ordered)
+            case _Keeping.TIMES:
+                one, other = (state.run.schedules[name].clocked for name in pair)
+                meetings = Meetings((one, other), 2.0 * self._jitter, every=False)
+                return prover.prove(clearance, meetings)
+
+    def _certificate(
+        self, state: StationState, name: str, pair: Pair, conflict: Conflict
+    ) -> Certificate:
+        side = pair.index(name)
+        prover = state.prover.prover(*pair)
+        motion = (prover.one, prover.other)[side]
+        begin, end = (float(s) for s in motion.sigma[conflict.rows[side]])
+        if self._kept[pair] is _Keeping.TIMES:
+            begin = 0.0  # All that was driven before has brought the robot there when it is.
+        return Certificate(
+            Verdict.VIOLATED if conflict.cause is ConflictCause.NEAR else Verdict.UNPROVEN,
+            _distance(conflict),
+            conflict_said(state.station, pair, conflict),
+            conflict.moves[side],
+            (begin, end),
+            conflict.times[side],
+            conflict.pair,
+            conflict.distance,
+        )
+
+
+def _may_lock(state: StationState) -> bool:
+    return state.orders is not None and bool(state.orders.stuck)
+
+
+def _refusal(message: str) -> Certificate:
+    return Certificate(Verdict.UNPROVEN, math.inf, message)
+
+
+def _distance(conflict: Conflict) -> float:
+    return math.inf if conflict.distance is None else conflict.distance
