@@ -14,6 +14,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from .errors import InputError
+from .program.move import ArcOrientation
 from .program.speed import Speed
 from .program.zone import Radius, Zone, ZoneKind
 
@@ -51,6 +52,7 @@ class MoveWords:
         needs: those of ``speeds`` that must be stated, since the language's own default would be
             taken instead.
         configurations: whether a target's configuration counts.
+        exclusive: those of ``speeds`` of which a move states one alone: mm/s, degrees/s or s.
 
     Raises:
         InputError: a name is no number of `Speed`, or something is needed that cannot be said.
@@ -60,14 +62,17 @@ class MoveWords:
     speeds: frozenset[str]
     needs: frozenset[str] = frozenset()
     configurations: bool = True
+    exclusive: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         unknown = sorted(self.speeds - _SPEED_FIELDS)
         if unknown:
             raise InputError(f"MoveWords.speeds: Speed has no {unknown[0]!r}")
-        unsaid = sorted(self.needs - self.speeds)
+        unsaid = sorted((self.needs | self.exclusive) - self.speeds)
         if unsaid:
-            raise InputError(f"MoveWords.needs: {unsaid[0]!r} is not among the speeds")
+            raise InputError(
+                f"MoveWords: {unsaid[0]!r} is needed or exclusive, and not among the speeds"
+            )
 
 
 @dataclass(frozen=True)
@@ -312,6 +317,9 @@ class Dialect:
         user_frames: whether a work object has a user frame and an object frame in it.
         stationary_tools: whether the robot may carry the work object to a tool that stands still.
         external_axes: whether targets have external axes.
+        tools: whether programs say what the TCP is; without, targets are the flange's.
+        loads: whether programs say what tools and parts weigh.
+        arc_orientations: how the tool may turn along arcs.
         orientation: the form in which it says rotations.
         in_si: whether lengths are said in m and angles in rad, not in mm and degrees.
         rigid_arcs: whether a tool that follows an arc keeps its orientation to the arc, whatever
@@ -344,6 +352,9 @@ class Dialect:
     user_frames: bool = False
     stationary_tools: bool = True
     external_axes: bool = True
+    tools: bool = True
+    loads: bool = True
+    arc_orientations: frozenset[ArcOrientation] = frozenset(ArcOrientation)
     orientation: Orientation = Orientation.QUATERNION
     in_si: bool = False
     rigid_arcs: bool = False

@@ -154,6 +154,11 @@ def solve(
     solutions: list[InverseSolution] = []
     names = [joint.name for joint in joints]
     beyond = beyond_coupled(coupled, names, settled) > LIMIT_SLACK
+    for k in np.flatnonzero(beyond.any(axis=1) & inside):
+        others = equivalent_turns(joints, settled[k])
+        fitting = others[(beyond_coupled(coupled, names, others) <= LIMIT_SLACK).all(axis=1)]
+        if len(fitting):  # a joint that is counted with another one may turn by more than once
+            settled[k], beyond[k] = fitting[np.abs(fitting).sum(axis=1).argmin()], False
     broken = beyond & inside[:, None]
     inside &= ~beyond.any(axis=1)
     for candidate, q, fits in zip(candidates, settled, inside, strict=True):

@@ -18,7 +18,7 @@ from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, Turn, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
-from .inverse import InverseSolution, Ranges, equivalent_turns, solve
+from .inverse import LIMIT_SLACK, InverseSolution, Ranges, equivalent_turns, solve
 from .joint import (
     COLUMNS,
     CoupledRange,
@@ -372,7 +372,12 @@ class Robot:
 
     def turns(self, q: ArrayLike) -> FloatArray:
         """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""
-        return equivalent_turns(self.joints, np.asarray(q, dtype=float))
+        every = equivalent_turns(self.joints, np.asarray(q, dtype=float))
+        if not self.coupled_ranges:
+            return every
+        names = [joint.name for joint in self.joints]
+        beyond = beyond_coupled(self.coupled_ranges, names, every)
+        return np.asarray(every[(beyond <= LIMIT_SLACK).all(axis=1)])
 
     # Dynamics
 

@@ -77,6 +77,28 @@ def matrix_from_rotation_vector(vector: FloatArray) -> FloatArray:
     return matrix_from_quaternion(np.concatenate([np.cos(half), scale * vector], -1))
 
 
+def euler_zyx(matrix: FloatArray) -> tuple[float, float, float]:
+    """Angles a, b, c, rad, of a rotation about z, then the new y, then the new x (3, 3).
+
+    Where b is a right angle, c is 0.
+    """
+    b = math.atan2(-matrix[2, 0], math.hypot(matrix[0, 0], matrix[1, 0]))
+    if abs(matrix[2, 0]) > 1.0 - 1e-12:
+        return math.atan2(-matrix[0, 1], matrix[1, 1]), b, 0.0
+    return (
+        math.atan2(matrix[1, 0], matrix[0, 0]),
+        b,
+        math.atan2(matrix[2, 1], matrix[2, 2]),
+    )
+
+
+def matrix_from_euler_zyx(a: float, b: float, c: float) -> FloatArray:
+    """The rotation (3, 3) of angles, rad, about z, then the new y, then the new x."""
+    axes = np.eye(3)
+    turns = [matrix_from_rotation_vector(v * axis) for v, axis in zip((c, b, a), axes, strict=True)]
+    return np.asarray(turns[2] @ turns[1] @ turns[0])
+
+
 def skew(vector: FloatArray) -> FloatArray:
     """Matrices (..., 3, 3) of the cross product with vectors (..., 3)."""
     x, y, z = np.moveaxis(np.asarray(vector, dtype=float), -1, 0)

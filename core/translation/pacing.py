@@ -124,7 +124,21 @@ class Pacer:
         if k is not None:
             self._keep_time(i, k, speed, words, stated)
             self._tell_line(i, k, speed, words)
-        return Speed(**stated)
+        return Speed(**self._alone(i, k, stated, words))
+
+    def _alone(
+        self, i: int, k: int | None, stated: dict[str, Any], words: MoveWords
+    ) -> dict[str, Any]:
+        """One of the numbers of which a language says one alone: that which the time needs."""
+        known = [name for name in stated if name in words.exclusive]
+        if len(known) < 2:
+            return stated
+        turning = k is not None and self._old.length[k] < _STILL
+        wanted = ("duration", *(("reorientation", "tcp") if turning else ("tcp", "reorientation")))
+        kept = next(name for name in wanted if name in known)
+        if kept == "reorientation":
+            self._sought[i] = kept
+        return {n: v for n, v in stated.items() if n == kept or n not in known}
 
     def _bound(self, i: int, stated: dict[str, Any], most: Mapping[str, float]) -> None:
         """Numbers no greater than the maker takes; a program of the same language has its own."""

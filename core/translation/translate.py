@@ -29,6 +29,7 @@ from .corners import EmulatedCorner, corners_of, fit_zones
 from .emulation import EmulatedProgram, Party
 from .frames import Frames
 from .half_turns import decided
+from .loads import without_loads
 from .losses import Losses, LossesOfPart
 from .overrides import without_override
 from .pacing import Pacer
@@ -163,7 +164,7 @@ class _Translator:
         placer = Placer(self.source, self.target, self.dialect, frames)
         placed, start = placer.place(program, route, losses)
         new_route = self.target.route(placed, start)
-        said = self._with_said_arcs(placed, new_route, losses)
+        said = self._with_said_arcs(without_loads(placed, self.dialect, losses), new_route, losses)
         ties = self._ties = Ties(said.statements, usable(said))
         self._shared = {move for moves in ties.moves() for move in moves}
         if said is not placed:
@@ -228,7 +229,11 @@ class _Translator:
 
     def _with_said_arcs(self, program: Program, route: Route, losses: LossesOfPart) -> Program:
         """Arcs on which the tool turns beside following them, where the language has none."""
-        if self.dialect is None or not self.dialect.rigid_arcs:
+        if self.dialect is None:
+            return program
+        if ArcOrientation.FOLLOWS_ARC not in self.dialect.arc_orientations:
+            return self._with_fixed_arcs(program, route, losses)
+        if not self.dialect.rigid_arcs:
             return program
         moves, changed = list(program.moves), False
         segments = make_segments(route.ends)
@@ -249,6 +254,17 @@ class _Translator:
             moves[i] = replace(move, orientation=ArcOrientation.FIXED_FRAME)
             changed = True
         return program.with_moves(tuple(moves)) if changed else program
+
+    def _with_fixed_arcs(self, program: Program, route: Route, losses: LossesOfPart) -> Program:
+        """Arcs on which the tool turns evenly from pose to pose, where it follows none."""
+        moves = list(program.moves)
+        for k, i in enumerate(route.moves):
+            move = moves[i]
+            if isinstance(move, MoveC) and move.orientation is ArcOrientation.FOLLOWS_ARC:
+                if make_segments(route.ends).angle[k] > np.pi:
+                    losses.at(i, "the tool turns evenly from pose to pose: it follows no arcs")
+                moves[i] = replace(move, orientation=ArcOrientation.FIXED_FRAME)
+        return program.with_moves(tuple(moves))
 
     # --------------------------------------------------------------------------- zones
 

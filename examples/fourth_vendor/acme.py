@@ -30,6 +30,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 from flyby.core.errors import InputError
 from flyby.core.hookspec import VendorRegister, hookimpl
@@ -47,13 +48,13 @@ from flyby.core.robot.model import Robot
 from flyby.core.source.lines.expressions import Datum, Expression, data_in, parse, parse_all
 from flyby.core.source.lines.interpreter import run_lines
 from flyby.core.source.lines.patcher import patch_lines
-from flyby.core.source.lines.program import (
+from flyby.core.source.lines.program import Grammar, read_lines
+from flyby.core.source.lines.statements import (
     Assign,
     Body,
     Call,
     Drive,
     End,
-    Grammar,
     If,
     Jump,
     Label,
@@ -64,9 +65,9 @@ from flyby.core.source.lines.program import (
     Pause,
     Return,
     Routine,
-    read_lines,
+    Situation,
 )
-from flyby.core.source.lines.program import Statement as LineStatement
+from flyby.core.source.lines.statements import Statement as LineStatement
 from flyby.core.source.patch.uses import MovePart, UseKind
 from flyby.core.source.reading import Files, ReadOptions, read_with
 from flyby.core.source.text.files import SourceFile, SourceText, read_source
@@ -88,6 +89,8 @@ class Acme:
 
     registers = frozenset({"R"})
     outputs = frozenset({"DO"})
+    vectors: Mapping[str, int] = MappingProxyType({})
+    argument = ""
 
     def statement(self, line: Line) -> LineStatement | None:
         """One line; a blank one or a comment (``;``) says nothing."""
@@ -157,7 +160,7 @@ def _drive(line: Line, word: str, begin: int) -> Drive:
         source.span(found.start(4), found.end(4)), parse_all(source, found.start(4), found.end(4))
     )
 
-    def build(target: Numbers, speed: Numbers, zone: Numbers, via: Numbers) -> Move:
+    def build(target: Numbers, speed: Numbers, zone: Numbers, via: Numbers, _: Situation) -> Move:
         (radius,) = zone
         tcp, turn = (dict(zip(given, speed, strict=True)).get(k) for k in (2, 3))
         pace = Speed(tcp, turn)

@@ -17,6 +17,8 @@ from ...core.dialect import Dialect, Orientation
 from ...core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from ...core.spatial.pose import Pose, Quaternion, Vector3
 from ...core.spatial.rotation import (
+    euler_zyx,
+    matrix_from_euler_zyx,
     matrix_from_rotation_vector,
     quaternion_from_matrix,
     rotation_vector,
@@ -94,7 +96,7 @@ class Rounding:
         if self.orientation is Orientation.ROTATION_VECTOR:
             vector = [self.angle(v) for v in rotation_vector(matrix).tolist()]
             return _quaternion(matrix_from_rotation_vector(np.array(vector)))
-        return _quaternion(_from_zyx(*(self.angle(v) for v in _zyx(matrix))))
+        return _quaternion(matrix_from_euler_zyx(*(self.angle(v) for v in euler_zyx(matrix))))
 
     def zone(self, zone: Zone) -> Zone:
         """A zone no larger, and `FINE` for one of next to nothing.
@@ -167,21 +169,3 @@ def _first_within(rounded: Iterable[float], value: float, lower: float, upper: f
 def _quaternion(matrix: FloatArray) -> Quaternion:
     w, x, y, z = (float(v) for v in quaternion_from_matrix(matrix))
     return w, x, y, z
-
-
-def _zyx(matrix: FloatArray) -> Vector3:
-    """Angles a, b, c, rad, of a rotation about z, then the new y, then the new x."""
-    b = math.atan2(-matrix[2, 0], math.hypot(matrix[0, 0], matrix[1, 0]))
-    if abs(matrix[2, 0]) > 1.0 - 1e-12:
-        return math.atan2(-matrix[0, 1], matrix[1, 1]), b, 0.0
-    return (
-        math.atan2(matrix[1, 0], matrix[0, 0]),
-        b,
-        math.atan2(matrix[2, 1], matrix[2, 2]),
-    )
-
-
-def _from_zyx(a: float, b: float, c: float) -> FloatArray:
-    axes = np.eye(3)
-    turns = [matrix_from_rotation_vector(v * axis) for v, axis in zip((c, b, a), axes, strict=True)]
-    return np.asarray(turns[2] @ turns[1] @ turns[0])

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..execution.steps import NOTHING, Exit, Step
-from .expressions import Datum, Expression, Number, data_in
-from .program import (
+from .expressions import Datum, Expression, Number, Operation, data_in
+from .program import Grammar, LineProgram
+from .statements import (
     Assign,
+    AssignAll,
     Body,
     Call,
     Drive,
     End,
-    Grammar,
     If,
     Jump,
     Label,
-    LineProgram,
     Return,
     Statement,
 )
@@ -47,10 +47,21 @@ class Statements:
         return NOTHING.union(*found)
 
     def _names(self, datum: Datum, computed: frozenset[str]) -> frozenset[str]:
-        """The name of a datum; of one whose number is computed, all that it may be."""
-        if isinstance(datum.index, Number):
-            return frozenset([f"{datum.word}[{datum.index.value:g}]"])
-        return computed
+        """The name of a datum; of one whose number is computed, all that it may be; of one of
+        several numbers, those of each."""
+        if datum.index is None:
+            return frozenset([datum.word])
+        if not isinstance(datum.index, Number) or isinstance(datum.element, Datum | Operation):
+            return computed
+        index = f"{datum.index.value:g}"
+        if isinstance(datum.element, Number):
+            return frozenset([f"{datum.word}[{index},{datum.element.value:g}]"])
+        if datum.word in self._grammar.vectors:
+            return frozenset(
+                f"{datum.word}[{index},{k}]"
+                for k in range(1, self._grammar.vectors[datum.word] + 1)
+            )
+        return frozenset([f"{datum.word}[{index}]"])
 
     def _step(self, statement: Statement) -> Step[Body]:
         if isinstance(statement, Drive):
@@ -64,16 +75,26 @@ class Statements:
         if isinstance(statement, End):
             return Step(exit=Exit.PROGRAM)
         if isinstance(statement, If):
-            return Step(reads=self.reads([statement.condition]), inner=(statement.then,))
+            inner = statement.blocks
+            reads = self.reads([statement.condition])
+            return Step(reads=reads, inner=inner, exhaustive=len(inner) > 1)
         if isinstance(statement, Call):
             body = self._program.routines.get(statement.routine.lower())
-            return Step(moves=body is None, calls=() if body is None else (body,))
+            given = self.reads(statement.arguments)
+            word = self._grammar.argument
+            taken = frozenset(f"{word}[{k + 1}]" for k in range(len(statement.arguments)))
+            calls = () if body is None else (body,)
+            return Step(moves=body is None, calls=calls, writes=taken, made_of=given)
         if isinstance(statement, Assign):
             names = self._names(statement.target, self._all)
             own = statement.target.word in self._grammar.outputs
-            made_of = self.reads([statement.value, statement.target.index])
-            outputs = names if isinstance(statement.target.index, Number) else None
+            indices = (statement.target.index, statement.target.element)
+            made_of = self.reads([statement.value, *(i for i in indices if i is not None)])
+            outputs = names if isinstance(statement.target.index, Number | None) else None
             return Step(writes=names, made_of=made_of, outputs=outputs if own else NOTHING)
+        if isinstance(statement, AssignAll):
+            made_of = self.reads([term for _, term in statement.terms])
+            return Step(writes=self._names(statement.target, self._all), made_of=made_of)
         return Step()
 
 
@@ -81,7 +102,9 @@ def expressions_of(statement: Statement) -> list[Expression]:
     """The expressions that decide what registers, outputs and jumps become."""
     if isinstance(statement, Assign):
         return [statement.target, statement.value]
+    if isinstance(statement, AssignAll):
+        return [statement.target, *(term for _, term in statement.terms)]
     if isinstance(statement, If):
-        inside = (e for s in statement.then.statements for e in expressions_of(s))
+        inside = (e for b in statement.blocks for s in b.statements for e in expressions_of(s))
         return [statement.condition, *inside]
     return []

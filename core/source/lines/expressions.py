@@ -1,12 +1,13 @@
 """Expressions of line-oriented languages: numbers, numbered data, sums and comparisons.
 
 ``R[1] + 1``, ``R[R[2]] * 0.5``, ``DI[1] = ON AND R[3] < 4``: numbers in the form of the text, data
-as a word and an index, ``ON`` and ``OFF`` for truths; from the tightest to the loosest ``* /``,
-``+ -``, comparisons, ``NOT``, ``AND``, ``OR``.
+as a word and an index, ``PR[1,2]`` one number of several, ``ON`` and ``OFF`` for truths; from the
+tightest to the loosest ``* / DIV MOD``, ``+ -``, comparisons, ``NOT`` (``!``), ``AND``, ``OR``.
 """
 
 from __future__ import annotations
 
+import math
 import operator
 import re
 from collections.abc import Callable, Iterator
@@ -44,12 +45,14 @@ class Datum:
 
     Args:
         word: before the bracket, in capitals.
-        index: in the bracket.
+        index: in the bracket; None of a datum that there is once (``OVERRIDE``).
+        element: which of its numbers, behind a comma; None for the whole of it.
     """
 
     span: Span
     word: str
-    index: Expression
+    index: Expression | None
+    element: Expression | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +71,8 @@ COMPUTE: dict[str, Callable[..., Value]] = {
     "-": lambda a, b=None: -a if b is None else a - b,
     "*": operator.mul,
     "/": operator.truediv,
+    "DIV": lambda a, b: float(int(a / b)),
+    "MOD": math.fmod,
     "=": operator.eq,
     "<>": operator.ne,
     "<": operator.lt,
@@ -78,10 +83,16 @@ COMPUTE: dict[str, Callable[..., Value]] = {
     "AND": lambda a, b: bool(a) and bool(b),
     "OR": lambda a, b: bool(a) or bool(b),
 }
-_LEVELS = (("OR",), ("AND",), ("=", "<>", "<", ">", "<=", ">="), ("+", "-"), ("*", "/"))
+_LEVELS = (
+    ("OR",),
+    ("AND",),
+    ("=", "<>", "<", ">", "<=", ">="),
+    ("+", "-"),
+    ("*", "/", "DIV", "MOD"),
+)
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<word>[A-Za-z_]\w*)"
-    r"|(?P<sign><>|<=|>=|[-+*/=<>\[\]()]))"
+    r"|(?P<sign><>|<=|>=|[-+*/=<>\[\](),!]))"
 )
 
 
@@ -111,7 +122,9 @@ def data_in(expression: Expression) -> Iterator[Datum]:
     """The numbered data in an expression, those in indices included."""
     if isinstance(expression, Datum):
         yield expression
-        yield from data_in(expression.index)
+        for number in (expression.index, expression.element):
+            if number is not None:
+                yield from data_in(number)
     elif isinstance(expression, Operation):
         for operand in expression.operands:
             yield from data_in(operand)
@@ -175,6 +188,7 @@ class _Reader:
 
     def _operand(self) -> Expression:
         start, word = self._start, self._word
+        word = "NOT" if word == "!" else word
         if word in ("-", "+", "NOT"):
             self._count()
             inner = self._operand()
@@ -183,8 +197,7 @@ class _Reader:
                 return Number(span, -inner.value if word == "-" else inner.value)
             return inner if word == "+" else Operation(span, word, (inner,))
         if word == "(":
-            inner = self._bracketed(")")
-            return inner
+            return self._bracketed(")")[0]
         if self._token is not None and self._token["number"]:
             self._advance()
             return Number(self._source.span(start, self._at), float(word))
@@ -193,17 +206,22 @@ class _Reader:
             if word in ("ON", "OFF"):
                 return Truth(self._source.span(start, self._at), word == "ON")
             if self._word == "[":
-                index = self._bracketed("]")
-                return Datum(self._source.span(start, self._at), word, index)
+                index, *element = self._bracketed("]")
+                span = self._source.span(start, self._at)
+                return Datum(span, word, index, element[0] if element else None)
             raise self._error(f"{word} has no index: write {word}[1]")
         raise self._error("a number or a numbered datum should stand here")
 
-    def _bracketed(self, closing: str) -> Expression:
+    def _bracketed(self, closing: str) -> list[Expression]:
+        """What a bracket holds: in square ones two numbers at most."""
         self._depth += 1
         if self._depth > DEEPEST:
             raise self._error(f"more than {DEEPEST} brackets inside each other")
         self._advance()
-        inner = self.level(0)
+        inner = [self.level(0)]
+        if closing == "]" and self._word == ",":
+            self._advance()
+            inner.append(self.level(0))
         if self._word != closing:
             raise self._error(f"a '{closing}' should stand here")
         self._advance()

@@ -6,9 +6,8 @@ depends on one, `core.source.execution.flow` decides, and where a move does, it 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import NoReturn
 from weakref import proxy
 
@@ -28,39 +27,26 @@ from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
 from ..reading import ReadOptions
 from .analysis import Statements, expressions_of
-from .expressions import Number
-from .program import (
+from .expressions import Datum, Expression, Number
+from .program import Grammar, LineProgram
+from .statements import (
     Assign,
+    AssignAll,
     Body,
     Call,
     Drive,
     End,
-    Grammar,
     If,
     Jump,
     Kept,
     Label,
-    LineProgram,
+    Numbers,
     Operand,
     Pause,
     Return,
     Statement,
 )
-from .values import Snapshot, Unknown, Values
-
-
-@dataclass(frozen=True, slots=True)
-class Literal:
-    """Numbers that stand in the text (see `core.source.execution.provenance.Source`)."""
-
-    span: Span
-    datum: str | None
-    numbers: Sequence[Span | None]
-
-    @property
-    def root(self) -> Span:
-        """The same: parts of it are not read apart."""
-        return self.span
+from .values import Literal, Snapshot, Unknown, Values
 
 
 class _Jumped(Exception):
@@ -83,14 +69,14 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
         program: the routines.
         grammar: of the language.
         options: entry, answers and limits; without an entry the lines before the first routine are
-            run, or the only routine there is.
+            run, or the only routine that the first file has.
 
     Raises:
         SourceError: what it does cannot be followed; file, line and cause are named.
     """
     name = (options.entry or "").lower()
-    if not name and not program.routines[""].statements and len(program.routines) == 2:
-        name = next(key for key in program.routines if key)
+    if not name and not program.routines[""].statements:
+        name = program.own[0] if len(program.own) == 1 else ""
     body = program.routines.get(name)
     where = Span(program.file, 1, 1, 0, 0)
     if body is None:
@@ -124,11 +110,14 @@ class _Interpreter:
         self.meter = Meter(options.limits, options.executed)
         self.outputs = Outputs()
         self.place: object = None
-        self._out = Transcript(lambda span: program.text[span.start : span.end], self.course)
+        self._out = Transcript(program.text_of, self.course)
         self._tree = Statements(program, grammar)
         self._analysis = Analysis(self._tree)
         self._flow: Flow[Body] = Flow(self._analysis, proxy(self))
-        self._values = Values(program.text, grammar, self.course, self.outputs)
+        self._values = Values(program.text_of, grammar, self.course, self.outputs)
+        for (word, number), numbers in program.data.items():
+            self._values.put_all(f"{word}[{number}]", numbers)
+        self._computed: set[str] = set()
         self._reads = Reads()
         self._loops: dict[int, Body] = {}
 
@@ -210,7 +199,7 @@ class _Interpreter:
         loop = Loop(
             between,
             jump.span,
-            self._program.text[jump.span.start : jump.span.end].strip(),
+            self._program.text_of(jump.span).strip(),
             NOTHING if unconditional else self._tree.reads(expressions_of(statement)),
             endless=unconditional,
         )
@@ -236,6 +225,8 @@ class _Interpreter:
                 self.place = object()
         elif isinstance(statement, Assign):
             self._assign(statement)
+        elif isinstance(statement, AssignAll):
+            self._assign_all(statement)
         elif isinstance(statement, If):
             self._if(statement)
         elif isinstance(statement, Label):
@@ -257,11 +248,13 @@ class _Interpreter:
         value = self._values.value(statement.condition)
         if isinstance(value, Unknown):
             span = statement.condition.span
-            choice = self._flow.choose(span, value.reason, [statement.then], None)
+            choice = self._flow.choose(span, value.reason, [statement.then], statement.otherwise)
             if choice.block is not None:
                 self._body(choice.block)
         elif value:
             self._body(statement.then)
+        elif statement.otherwise is not None:
+            self._body(statement.otherwise)
 
     def _call(self, statement: Call) -> None:
         name = statement.routine
@@ -279,6 +272,8 @@ class _Interpreter:
                 f'answer [calls] {name} = "skip"'
             )
             raise SourceError(unknown_name("routine", name, known, offer), statement.span)
+        for k, argument in enumerate(statement.arguments):
+            self._values.put(f"{self._grammar.argument}[{k + 1}]", self._values.value(argument))
         self.meter.call(name, statement.span)
         self._out.called(statement.span)
         try:
@@ -310,7 +305,11 @@ class _Interpreter:
                 unknown = Unknown("a register whose number is not known")
                 registers.update(dict.fromkeys(registers, unknown))
             else:
-                registers[name] = value
+                source = None
+                if isinstance(statement.value, Number):
+                    span = statement.value.span
+                    source = Literal(span, name, (span,))
+                self._values.put(name, value, source)
             return
         if name is None:
             self.outputs.forget()
@@ -319,17 +318,76 @@ class _Interpreter:
         word = statement.target.word
         self._out.keep(statement.span, word, "outputs do not move the robot")
 
+    def _assign_all(self, statement: AssignAll) -> None:
+        name = self._values.name(statement.target)
+        if name is None:
+            raise SourceError(
+                "nobody knows which one this is: answer its number in the table [values] of the "
+                "answers",
+                statement.target.span,
+            )
+        count = self._grammar.vectors[statement.target.word]
+        if not statement.terms:
+            unknown = Unknown(f"{name}, which is {statement.reason}")
+            for k in range(count):
+                self._values.put(f"{name[:-1]},{k + 1}]", unknown)
+            return
+        try:
+            found = [(sign, *self._point(term)) for sign, term in statement.terms]
+        except SourceError as error:
+            for k in range(count):
+                self._values.put(f"{name[:-1]},{k + 1}]", Unknown(str(error)))
+            return
+        if len(found) == 1 and found[0][0] == 1.0:
+            _, numbers, sources = found[0]
+            self._values.put_all(name, numbers, sources)
+            return
+        sums = (
+            sum(sign * numbers[k] for sign, numbers, _ in found)
+            for k in range(min(len(numbers) for _, numbers, _ in found))
+        )
+        self._values.put_all(name, Numbers.of(sums, found[0][1].kind))
+
     # ------------------------------------------------------------------------- moves
+
+    @property
+    def before(self) -> move.Move | None:
+        """See `Situation`."""
+        return self.place if isinstance(self.place, move.Move) else None
+
+    def number(self, datum: Expression) -> float:
+        """See `Situation`."""
+        return self._values.number(datum)
+
+    def setting(self, word: str, default: float) -> float:
+        """See `Situation`."""
+        value = self._values.registers.get(word, default)
+        if isinstance(value, Unknown):
+            raise InputError(f"a move depends on {word}, and that on {value.reason}")
+        return float(value)
+
+    def vector(self, word: str, number: int) -> Numbers:
+        """See `Situation`."""
+        nowhere = Span(self._program.file, 1, 1, 0, 0)
+        return self._values.all_of(Datum(nowhere, word, Number(nowhere, float(number))))
+
+    def computed(self, *parts: str) -> None:
+        """See `Situation`."""
+        self._computed.update(parts)
 
     def _drive(self, statement: Drive) -> None:
         operands = (statement.target, statement.speed, statement.zone, statement.via)
         found = [None if one is None else self._operand(one) for one in operands]
-        numbers = [() if one is None else one[0] for one in found]
+        numbers = [Numbers() if one is None else one[0] for one in found]
+        self._computed.clear()
         try:
-            move = statement.build(*numbers)
+            move = statement.build(numbers[0], numbers[1], numbers[2], numbers[3], self)
         except (InputError, ValueError) as error:
             raise SourceError(str(error), statement.span) from None
-        target, speed, zone, via = (None if one is None else one[1] for one in found)
+        target, speed, zone, via = (
+            one and (replace(one[1], sources=()) if part in self._computed else one[1])
+            for part, one in zip(("target", "speed", "zone", "via"), found, strict=True)
+        )
         assert target is not None and speed is not None and zone is not None
         self.meter.move(statement.span)
         for part in filter(None, (target, speed, zone, via)):
@@ -338,22 +396,34 @@ class _Interpreter:
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
 
-    def _operand(self, operand: Operand) -> tuple[tuple[float, ...], MovePart]:
+    def _operand(self, operand: Operand) -> tuple[Numbers, MovePart]:
         """The numbers of a part of a move, and where they stand."""
         if operand.point is None:
-            numbers = tuple(self._values.number(one) for one in operand.numbers)
+            numbers = Numbers(self._values.number(one) for one in operand.numbers)
             sources = tuple(
                 Literal(one.span, None, (one.span,)) if isinstance(one, Number) else None
                 for one in operand.numbers
-            )
+            ) or (Literal(operand.span, None, ()),)
             return numbers, MovePart(operand.span, sources if any(sources) else ())
-        index = self._values.number(operand.point.index)
-        key = operand.point.word, int(index)
+        numbers, sources = self._point(operand.point)
+        point = sources[:1] if len({id(source) for source in sources}) == 1 else sources
+        return numbers, MovePart(operand.span, point if any(sources) else ())
+
+    def _point(self, datum: Datum) -> tuple[Numbers, tuple[Literal | None, ...]]:
+        """The numbers of a point, or of a datum of several, and the literal of each."""
+        if datum.word in self._grammar.vectors:
+            numbers = self._values.all_of(datum)
+            own = (self._values.name(datum) or "").removesuffix("]")
+            every = [self._values.sources.get(f"{own},{k + 1}]") for k in range(len(numbers))]
+            return numbers, tuple(every)
+        assert datum.index is not None
+        index = self._values.number(datum.index)
+        key = datum.span.file, datum.word, int(index)
         point = self._program.points.get(key)
-        text = f"{key[0]}[{key[1]}]"
+        text = f"{key[1]}[{key[2]}]"
         if point is None:
-            known = [f"{word}[{number}]" for word, number in self._program.points]
-            raise SourceError(unknown_name("point", text, known, "define it"), operand.point.span)
-        numbers = tuple(self._values.number(one) for one in point.numbers)
+            known = [f"{w}[{n}]" for file, w, n in self._program.points if file == key[0]]
+            raise SourceError(unknown_name("point", text, known, "define it"), datum.span)
+        numbers = Numbers.of((self._values.number(one) for one in point.numbers), point.kind)
         spans = tuple(one.span if isinstance(one, Number) else None for one in point.numbers)
-        return numbers, MovePart(operand.span, (Literal(point.span, text, spans),))
+        return numbers, (Literal(point.span, text, spans),) * max(1, len(numbers))

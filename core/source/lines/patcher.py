@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 from ...errors import InputError, Span
 from ...program.move import Move
+from ...program.origin import Ownership
 from ...program.program import Program
 from ..patch.edits import Edit, reading_of
 from ..patch.plan import PatchPlan, Wish, patch_program
@@ -15,10 +17,16 @@ from ..write.options import PatcherOptions
 
 NumbersOf = Callable[[UseKind, MovePart, Move], Sequence[float]]
 """The numbers of a part of a move, in the order in which a line has them."""
+OwnNumbers = Callable[[Use], Iterable[Edit]]
+"""What gives a part of a move numbers, or words, of its own."""
 
 
 def patch_lines(
-    program: Program, options: PatcherOptions, numbers: NumbersOf, number: Callable[[float], str]
+    program: Program,
+    options: PatcherOptions,
+    numbers: NumbersOf,
+    number: Callable[[float], str],
+    own: OwnNumbers | None = None,
 ) -> Files:
     """The files of a program with the numbers that it has now.
 
@@ -31,6 +39,7 @@ def patch_lines(
         options: what may get numbers of its own.
         numbers: of a part; what the language cannot say it refuses (`InputError`).
         number: a number as the language writes it.
+        own: how a move gets numbers of its own; None for its numbers in the place of the point.
 
     Returns:
         The files that changed, by name.
@@ -46,7 +55,8 @@ def patch_lines(
     literals = _Literals(text_at, numbers, number)
 
     def edits(plan: PatchPlan) -> list[Edit]:
-        return [edit for use in plan.changes for edit in _edits(plan, use, literals)]
+        write = own or partial(_in_place_of_point, literals)
+        return [edit for use in plan.changes for edit in _edits(plan, use, write)]
 
     return patch_program(program, options, literals, edits)
 
@@ -84,16 +94,25 @@ class _Literals:
         return Wish(texts, complete=not missing)
 
 
-def _edits(plan: PatchPlan, use: Use, literals: _Literals) -> list[Edit]:
+def _in_place_of_point(literals: _Literals, use: Use) -> list[Edit]:
+    return [Edit(use.origin.span, " ".join(literals.written(use)), use.index)]
+
+
+def _edits(plan: PatchPlan, use: Use, own: OwnNumbers) -> list[Edit]:
     try:
         against = plan.against(use)
         if plan.changeable(use) and plan.wish(use).complete and not against:
             return [Edit(span, text, use.index) for span, text in plan.texts(use).items()]
-        if use.origin.numbers:
+        at_move = use.origin.ownership is not Ownership.DERIVED and not any(
+            use.origin.datum_of(k) for k in range(len(use.origin.numbers))
+        )
+        if at_move and not against:
+            pass  # other words at the move itself: a stop becomes a zone
+        elif use.origin.numbers:
             plan.check_shared(use, against)
         else:
             plan.check_computed()
         plan.check_executions(use)
-        return [Edit(use.origin.span, " ".join(literals.written(use)), use.index)]
+        return list(own(use))
     except InputError as error:
         raise use.error(str(error)) from None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ...errors import SourceError, Span
 from ...program.question import Answer
@@ -11,6 +12,21 @@ from ..execution.answers import About, AnswerError, Course
 from ..execution.outputs import Outputs
 from .expressions import COMPUTE, Datum, Expression, Number, Operation, Truth, Value
 from .program import Grammar
+from .statements import Numbers
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """Numbers that stand in the text (see `core.source.execution.provenance.Source`)."""
+
+    span: Span
+    datum: str | None
+    numbers: Sequence[Span | None]
+
+    @property
+    def root(self) -> Span:
+        """The same: parts of it are not read apart."""
+        return self.span
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,21 +60,57 @@ class Values:
     """The values of one run.
 
     Args:
-        text: of the file.
+        text_of: the text that stands at a place.
         grammar: of the language.
         course: the user's answers.
         outputs: what the program has set its outputs to.
 
     Attributes:
-        registers: by name, ``R[1]``.
+        registers: by name, ``R[1]``, ``PR[1,2]``.
+        sources: the literals that registers have their values from, by name.
+        kinds: what data of several numbers are beside them, by name.
     """
 
-    def __init__(self, text: str, grammar: Grammar, course: Course, outputs: Outputs) -> None:
-        self._text = text
+    def __init__(
+        self,
+        text_of: Callable[[Span], str],
+        grammar: Grammar,
+        course: Course,
+        outputs: Outputs,
+    ) -> None:
+        self._text_of = text_of
         self._grammar = grammar
         self._course = course
         self.outputs = outputs
         self.registers: dict[str, Value | Unknown] = {}
+        self.sources: dict[str, Literal | None] = {}
+        self.kinds: dict[str, Any] = {}
+
+    def all_of(self, datum: Datum) -> Numbers:
+        """The numbers of a datum that has several.
+
+        Raises:
+            SourceError: they are not known.
+        """
+        count, numbers = self._grammar.vectors[datum.word], []
+        for k in range(count):
+            element = Datum(datum.span, datum.word, datum.index, Number(datum.span, k + 1.0))
+            if k >= 6 and self.name(element) not in self.registers:
+                break  # external axes
+            numbers.append(self.number(element))
+        return Numbers.of(numbers, self.kinds.get(self.name(datum) or ""))
+
+    def put(self, name: str, value: Value | Unknown, source: Literal | None = None) -> None:
+        """Give a register a value; ``source``: the literal that states it."""
+        self.registers[name] = value
+        self.sources[name] = source
+
+    def put_all(self, name: str, numbers: Numbers, sources: Sequence[Literal | None] = ()) -> None:
+        """Give a datum all its numbers."""
+        own = name.removesuffix("]")
+        for k, value in enumerate(numbers):
+            self.put(f"{own},{k + 1}]", value, sources[k] if sources else None)
+        self.kinds[name] = numbers.kind
 
     def number(self, expression: Expression) -> float:
         """A number that a move needs.
@@ -107,7 +159,7 @@ class Values:
 
     def _datum(self, datum: Datum) -> Value | Unknown:
         name = self.name(datum)
-        text = self._text[datum.span.start : datum.span.end]
+        text = self._text_of(datum.span)
         if name is None:
             return Unknown(f"{text}, whose number is not known")
         if datum.word in self._grammar.registers and name in self.registers:
@@ -122,13 +174,19 @@ class Values:
         return _answered(answer, name, datum.span)
 
     def name(self, datum: Datum) -> str | None:
-        """Of a datum, ``R[1]``; None if its number is not known."""
-        index = self.value(datum.index)
-        if isinstance(index, Unknown):
-            return None
-        if isinstance(index, bool) or index != int(index):
-            raise SourceError(f"{datum.word} has whole numbers", datum.span)
-        return f"{datum.word}[{int(index)}]"
+        """Of a datum, ``R[1]``, ``PR[1,2]``; None if its number is not known."""
+        if datum.index is None:
+            return datum.word
+        numbers: list[str] = []
+        parts = (datum.index,) if datum.element is None else (datum.index, datum.element)
+        for part in parts:
+            index = self.value(part)
+            if isinstance(index, Unknown):
+                return None
+            if isinstance(index, bool) or index != int(index):
+                raise SourceError(f"{datum.word} has whole numbers", datum.span)
+            numbers.append(str(int(index)))
+        return f"{datum.word}[{','.join(numbers)}]"
 
 
 def _answered(answer: Answer, name: str, span: Span) -> Value:

@@ -1,0 +1,332 @@
+"""Programs of one statement a line: what the statements are, and lines put together to routines.
+
+A language says what a line is (`Grammar`); the statements here are what it can say. A condition
+before a statement makes it an `If` of that one statement; `blocks` makes one of the lines between
+``IF`` and ``ENDIF``, and loops of those between ``FOR`` and ``ENDFOR``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol
+
+from ...errors import Span
+from ...program.move import Move
+from ..text.files import SourceText
+from .expressions import Datum, Expression
+
+
+class Numbers(tuple[float, ...]):
+    """The numbers of a part of a move.
+
+    Attributes:
+        kind: what the point that they are of is beside them (`NumberedPoint.kind`).
+    """
+
+    kind: Any = None
+
+    @classmethod
+    def of(cls, values: Iterable[float], kind: Any = None) -> Numbers:
+        """Numbers with a kind."""
+        made = cls(values)
+        made.kind = kind
+        return made
+
+
+class Situation(Protocol):
+    """What a move may depend on beside its own numbers."""
+
+    @property
+    def before(self) -> Move | None:
+        """The move before, if that is known."""
+        ...
+
+    def number(self, datum: Expression) -> float:
+        """What an expression is now.
+
+        Raises:
+            SourceError: it is not known.
+        """
+        ...
+
+    def setting(self, word: str, default: float) -> float:
+        """What the datum that there is once was set to.
+
+        Raises:
+            SourceError: it is not known.
+        """
+        ...
+
+    def vector(self, word: str, number: int) -> Numbers:
+        """The numbers of a datum that has several: those of ``PR[2]``.
+
+        Raises:
+            SourceError: they are not known.
+        """
+        ...
+
+    def computed(self, *parts: str) -> None:
+        """These parts (``target``, ``speed``, ``zone``, ``via``) of the move are not what the text
+        states: no number of it can be changed for them."""
+        ...
+
+
+_LINE = re.compile(r"[^\r\n]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A line that is not blank.
+
+    Args:
+        source: the file.
+        start, end: offsets of its first character that is no blank, and behind its last.
+    """
+
+    source: SourceText
+    start: int
+    end: int
+
+    @property
+    def text(self) -> str:
+        """The line, without the blanks round it."""
+        return self.source.text[self.start : self.end]
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        return self.source.span(self.start, self.end)
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """A part of a move: a numbered point, or numbers at the move.
+
+    Args:
+        span: of it.
+        numbers: one expression each; empty if it is a point.
+        point: the point.
+    """
+
+    span: Span
+    numbers: tuple[Expression, ...] = ()
+    point: Datum | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """A move.
+
+    Args:
+        build: the move from the numbers of its target, speed, zone and auxiliary point, and from
+            what else is so; of what it raises (`InputError`, `ValueError`) the line is named.
+        via: the auxiliary point of an arc.
+    """
+
+    span: Span
+    target: Operand
+    speed: Operand
+    zone: Operand
+    build: Callable[[Numbers, Numbers, Numbers, Numbers, Situation], Move]
+    via: Operand | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """``R[1] = R[1] + 1``, ``DO[2] = ON``"""
+
+    span: Span
+    target: Datum
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class AssignAll:
+    """``PR[1] = P[2] + PR[3]``: all numbers of a datum that has several.
+
+    Args:
+        terms: a sign and a datum or point each; none if nobody knows what it becomes (the position
+            of the running robot).
+        reason: what it depends on then.
+    """
+
+    span: Span
+    target: Datum
+    terms: tuple[tuple[float, Datum], ...]
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """Where jumps lead."""
+
+    span: Span
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Jump:
+    """A jump to a label of the same routine."""
+
+    span: Span
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """Statements that are carried out if a condition holds, and others if not."""
+
+    span: Span
+    condition: Expression
+    then: Body
+    otherwise: Body | None = None
+
+    @property
+    def blocks(self) -> tuple[Body, ...]:
+        """The statements, and the others."""
+        return (self.then,) if self.otherwise is None else (self.then, self.otherwise)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call of a routine with what its arguments are."""
+
+    span: Span
+    routine: str
+    arguments: tuple[Expression, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Return:
+    """The routine ends."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """The program ends."""
+
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Pause:
+    """The robot waits for a time, s, or until a condition holds."""
+
+    span: Span
+    time: Expression | None = None
+    condition: Expression | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is kept as it stands and not carried out.
+
+    Args:
+        name: of the instruction, for the note.
+        why: it is not carried out.
+        stops: whether the robot stops at it.
+    """
+
+    span: Span
+    name: str
+    why: str
+    stops: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class NumberedPoint:
+    """A numbered point.
+
+    Args:
+        datum: its word and number.
+        numbers: of it.
+        kind: what it is beside its numbers: in which frames, joints or a pose.
+    """
+
+    span: Span
+    datum: Datum
+    numbers: tuple[Expression, ...]
+    kind: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class Routine:
+    """The lines from here on are another routine's."""
+
+    span: Span
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """A block begins; its `If` has the statements that follow.
+
+    Args:
+        condition: of a block that is carried out if it holds.
+        counter, last, step: of one that is repeated: what counts from ``first`` to ``last``.
+    """
+
+    span: Span
+    condition: Expression | None = None
+    counter: Datum | None = None
+    first: Expression | None = None
+    last: Expression | None = None
+    step: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Otherwise:
+    """What is done if the condition before does not hold.
+
+    Args:
+        condition: of it, in turn; None for none.
+        then: what is done; None if the lines up to `Close` say that.
+    """
+
+    span: Span
+    condition: Expression | None = None
+    then: Statement | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Close:
+    """A block ends."""
+
+    span: Span
+
+
+Statement = (
+    Drive
+    | Assign
+    | AssignAll
+    | Open
+    | Otherwise
+    | Close
+    | Label
+    | Jump
+    | If
+    | Call
+    | Return
+    | End
+    | Pause
+    | Kept
+    | NumberedPoint
+    | Routine
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Statements in order."""
+
+    statements: tuple[Statement, ...] = ()
+
+    @cached_property
+    def labels(self) -> Mapping[str, int]:
+        """Index of each label."""
+        return {s.name: i for i, s in enumerate(self.statements) if isinstance(s, Label)}

@@ -1,0 +1,38 @@
+"""What flyby gets of FANUC."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from flyby.core.hookspec import VendorRegister, hookimpl
+from flyby.core.vendor import Vendor, lazy_motion, lazy_robots
+
+from .configuration import label
+from .dialect import TP
+from .language import Language
+
+DATA = Path(__file__).parent / "data"
+
+
+@hookimpl
+def flyby_register_vendors(register: VendorRegister) -> None:
+    """Hand over FANUC."""
+    language = Language()
+    register.add(
+        Vendor(
+            name="fanuc",
+            robots=lazy_robots(DATA.glob("robots/*.toml")),
+            motion=lazy_motion(DATA / "motion.toml"),
+            label=label,
+            reader=language,
+            writer=language,
+            patcher=language,
+            recorder=language,
+            suffixes=(".ls",),
+            companions={
+                ".va": "the controller's variables: name the program (.ls) beside them",
+                ".tp": "a program in binary form: save it as text (.ls)",
+            },
+            speaks=TP,
+        )
+    )

@@ -1,0 +1,196 @@
+"""Program → a TP program as text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from flyby.core.errors import InputError
+from flyby.core.program.event import Event, EventAnchor
+from flyby.core.program.move import Move, MoveC, MoveJ, Opaque, Wait
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget, PoseTarget, Target
+from flyby.core.program.tool import FLANGE, WORLD
+from flyby.core.program.zone import VendorZone, Zone
+from flyby.core.source.write.numbering import Numbering
+from flyby.core.source.write.options import OpaqueStyle, chosen
+from flyby.core.source.write.refusals import check_said
+from flyby.core.source.write.statements import lines_of_statements
+from flyby.core.spatial.pose import Pose
+
+from .configuration import FanucConfiguration
+from .dialect import CR, TP
+from .moves import UNITS, numbers_of
+
+_HEAD = """\
+/PROG  {name}
+/ATTR
+OWNER\t\t= MNEDITOR;
+COMMENT\t\t= "by flyby";
+DEFAULT_GROUP\t= 1,*,*,*,*;
+CONTROL_CODE\t= 00000000 00000000;
+/MN
+"""
+_SCRATCH = 100
+"""The position register that frames go through."""
+_REMARK = 32
+"""Characters of a remark."""
+
+
+@dataclass(frozen=True, slots=True)
+class TpOptions:
+    """``opaque``: what becomes of what was kept as text."""
+
+    opaque: OpaqueStyle = OpaqueStyle.KEEP
+
+
+def number(value: float) -> str:
+    """Three decimals as controllers write them, more where these do not say it."""
+    text = f"{value:.3f}"
+    return text if abs(float(text) - value) < 1e-10 else f"{value:.9f}"
+
+
+def amount(value: float) -> str:
+    """A number of a motion instruction."""
+    return f"{round(value, 9):.9f}".rstrip("0").rstrip(".")
+
+
+def speed_text(move: Move, speed: Speed) -> str:
+    """``500mm/sec``, ``50%``, ``2sec``."""
+    for unit in ("sec", "mm/sec", "deg/sec"):
+        name, scale = UNITS[unit]
+        if getattr(speed, name) is not None:
+            return f"{amount(getattr(speed, name) / scale)}{unit}"
+    return f"{amount(100 * speed.joint_fraction)}%" if isinstance(move, MoveJ) else "max_speed"
+
+
+def zone_text(zone: Zone) -> str:
+    """``FINE``, ``CNT50``, ``CR5,10``."""
+    if not isinstance(zone, VendorZone):
+        return "FINE"
+    size = amount(zone.size / zone.kind.unit)
+    if zone.kind == CR and zone.ratio != 1.0:
+        return f"CR{size},{amount(zone.size * zone.ratio / zone.kind.unit)}"
+    return f"{zone.kind.word}{size}"
+
+
+def position(index: int, target: Target, frames: tuple[str, str]) -> str:
+    """The text of a position."""
+    if target.external:
+        raise InputError("external axes are not written")
+    values = [number(v) for v in numbers_of(target)]
+    head = f"P[{index}]{{\n   GP1:\n\tUF : {frames[0]}, UT : {frames[1]},"
+    if isinstance(target, JointTarget):
+        axes = [f"\tJ{k + 1}= {v:>9} deg" for k, v in enumerate(values)]
+    else:
+        label = target.configuration
+        if label is not None and not isinstance(label, FanucConfiguration):
+            raise InputError(f"{label} is no CONFIG: label the target's solution for this robot")
+        head += f"\t\tCONFIG : '{label}'," if label is not None else ""
+        units = ["mm"] * 3 + ["deg"] * 3
+        axes = [f"\t{a} = {v:>9}  {u}" for a, v, u in zip("XYZWPR", values, units, strict=True)]
+    return f"{head}\n{','.join(axes[:3])},\n{','.join(axes[3:])}\n}};\n"
+
+
+@dataclass
+class Writer:
+    """Writes one program."""
+
+    options: TpOptions
+    before: tuple[str, ...] = ()
+    after: tuple[str, ...] = ()
+    positions: list[str] = field(default_factory=list)
+    setup: list[str] = field(default_factory=list)
+    tools: Numbering[Pose] = field(default_factory=lambda: Numbering("tools", 10))
+    frames: Numbering[Pose] = field(default_factory=lambda: Numbering("frames", 9))
+    _in: tuple[int, int] | None = None
+
+    def text(self, program: Program, name: str) -> str:
+        """The whole file."""
+        said = lines_of_statements(program, self._wait, self._opaque, self._move)
+        lines = [*self.before, *self.setup, *said, *self.after]
+        numbered = "".join(f"{k + 1:>4}:{line} ;\n" for k, line in enumerate(lines))
+        return f"{_HEAD.format(name=name)}{numbered}/POS\n{''.join(self.positions)}/END\n"
+
+    def _wait(self, wait: Wait) -> Iterator[str]:
+        yield f"  WAIT {amount(wait.duration)}(sec)"
+
+    def _opaque(self, kept: Opaque) -> Iterator[str]:
+        if self.options.opaque is OpaqueStyle.KEEP:
+            yield f"  {kept.text}"
+            return
+        text = " ".join(kept.text.replace(";", ",").split())
+        for at in range(0, len(text), _REMARK):
+            yield f"  !{text[at : at + _REMARK]}"
+
+    def _move(self, move: Move, index: int) -> Iterator[str]:
+        check_said(move, TP, "TP")
+        frame = self._number(
+            self.frames,
+            "UFRAME",
+            move.work_object.pose,
+            move.work_object.name,
+            move.work_object == WORLD,
+        )
+        tool = self._number(self.tools, "UTOOL", move.tool.tcp, move.tool.name, move.tool == FLANGE)
+        if self._in != (frame, tool):
+            self._in = frame, tool
+            yield f"  UFRAME_NUM={frame}"
+            yield f"  UTOOL_NUM={tool}"
+        goals: list[Target] = (
+            [move.target] if not isinstance(move, MoveC) else [move.via, move.target]
+        )
+        names = []
+        for goal in goals:
+            self.positions.append(position(len(self.positions) + 1, goal, (str(frame), str(tool))))
+            names.append(f"P[{len(self.positions)}]")
+        kind = type(move).__name__[-1]
+        override = move.speed.acceleration_override
+        options = f" ACC{amount(100 * override)}" if override != 1.0 else ""
+        options += "".join(self._event(event) for event in move.events)
+        if len(move.events) > 1:
+            raise InputError("TP does one thing on the way of a move")
+        if (
+            isinstance(move, MoveJ)
+            and move.speed.duration is not None
+            and move.speed.joint_fraction != 1.0
+        ):
+            raise InputError("TP says a time or a share of the speed")
+        yield f"{kind} {' '.join(names)} {speed_text(move, move.speed)} {zone_text(move.zone)}{options}"
+
+    def _event(self, event: Event) -> str:
+        if event.anchor is not EventAnchor.END or (event.distance and event.time):
+            raise InputError("TP counts times or distances on the way from the end of a move")
+        if self.options.opaque is not OpaqueStyle.KEEP:
+            return ""
+        if event.distance:
+            return f" DB {amount(1000 * event.distance)}mm,{event.text}"
+        return f" {'TB' if event.time >= 0 else 'TA'} {amount(abs(event.time))}sec,{event.text}"
+
+    def _number(
+        self, numbering: Numbering[Pose], word: str, pose: Pose, name: str, none: bool
+    ) -> int:
+        """The number of a frame or tool; a new one is set before the first move."""
+        if none or pose == Pose():
+            return 0
+        new = pose not in numbering.numbers
+        found = numbering.of(pose, name)
+        if new:
+            index = len(self.positions) + 1
+            self.positions.append(position(index, PoseTarget(pose), ("F", "F")))
+            self.setup += [f"  PR[{_SCRATCH}]=P[{index}]", f"  {word}[{found}]=PR[{_SCRATCH}]"]
+        return found
+
+
+def program_name(program: Program) -> str:
+    """A name that TP takes: 36 letters, digits and ``_`` at most."""
+    name = re.sub(r"\W+", "_", program.name, flags=re.ASCII).upper()[:36]
+    return name if name[:1].isalpha() else f"P_{name}"[:36]
+
+
+def options_of(options: dict[str, str]) -> TpOptions:
+    """From options by name."""
+    found: TpOptions = chosen(TpOptions, options, "TP writer")
+    return found

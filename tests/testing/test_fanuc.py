@@ -1,0 +1,16 @@
+"""The FANUC distribution under ``examples`` passes its own tests without being installed."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from uninstalled import tests_of, vendor_of  # noqa: E402
+
+FANUC = vendor_of("fanuc", "fanuc")
+_CONFORMANCE = tests_of("fanuc", "test_conformance")
+
+
+class TestFanucConformance(_CONFORMANCE.TestFanuc):  # type: ignore[misc]
+    vendor = FANUC
