@@ -153,5 +153,5 @@ def test_where_several_may_be_meant_they_are_offered() -> None:
 
 
 def test_an_arm_that_is_not_modelled_says_why() -> None:
-    with pytest.raises(InputError, match=r"IRB 580.* cannot be driven: .*"):
-        find_robot("IRB 580-16")
+    with pytest.raises(InputError, match=r"IRB 580-12s cannot be driven: .*"):
+        find_robot("IRB 580-12s")
