@@ -18,7 +18,7 @@ from ....core.backup.backup import BackupRobot
 from ....core.backup.contents import BackupNotes, listed
 from ....core.door import called
 from ....core.errors import InputError
-from ....core.robot.joint import ExternalAxis, Joint
+from ....core.robot.joint import CoupledRange, ExternalAxis, Joint
 from ....core.robot.model import STANDARD_GRAVITY, Robot
 from ....core.spatial.pose import IDENTITY, Pose
 from ....core.spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
@@ -28,6 +28,9 @@ from .external_axes import Unit, base_frame, conveyors, units_of
 
 _SAME = 1e-3
 """rad, m/s² by which numbers may differ that are rounded in a file."""
+_COUPLED = "lower_joint_coupl_bound", "upper_joint_coupl_bound"
+_BETWEEN_ARMS = "the angle between upper arm and forearm"
+"""What bounds of neighbouring axes limit; the type's doubt about it begins so."""
 _LONGEST = 1e3
 """rad or m: a range beyond it is none."""
 
@@ -157,25 +160,60 @@ def _with_ranges(
     robot: Robot, moc: Parameters, arm: Record, notes: BackupNotes
 ) -> tuple[Robot, list[str]]:
     """The robot with the ranges of its ARM records."""
-    joints, coupled, records = [], [], []
+    joints, records = [], []
+    ranges: list[CoupledRange] = []
+    unknown: list[str] = []
     for index, joint in enumerate(robot.joints):
         record = _arm_record(moc, arm, index)
         if record is not None:
             ranged = _ranged(joint, record, notes)
             records += [record] if ranged is not joint else []
-            if record.text("upper_joint_coupl_bound") or record.text("lower_joint_coupl_bound"):
-                coupled.append(joint.name)
+            if any(record.text(bound) for bound in _COUPLED):
+                coupled = _coupled(joint, record)
+                unknown += [] if coupled is not None else [joint.name]
+                ranges += [] if coupled is None else [coupled]
             joint = ranged
         joints.append(joint)
     if not records:
         return robot, ["MOC.cfg states no ranges of this arm: those of its type are taken"]
     origins = {**robot.origins, "range": _origin(records)}
     doubts = robot.doubts
-    if coupled:
+    if unknown:
         said = "the range of a joint depends on its neighbour's (coupl_bound), which is not checked"
-        doubts = (*doubts, f"{', '.join(coupled)}: {said}")
+        doubts = (*doubts, f"{', '.join(unknown)}: {said}")
+    if ranges:
+        doubts = tuple(doubt for doubt in doubts if not doubt.startswith(_BETWEEN_ARMS))
     lacks = [] if len(records) == robot.arm_size else [_partly(robot, len(records))]
-    return replace(robot, joints=tuple(joints), origins=origins, doubts=doubts), lacks
+    robot = replace(
+        robot,
+        joints=tuple(joints),
+        origins=origins,
+        doubts=doubts,
+        coupled_ranges=(*robot.coupled_ranges, *ranges),
+    )
+    return robot, lacks
+
+
+def _coupled(joint: Joint, record: Record) -> CoupledRange | None:
+    """The range of the angle between upper arm and forearm, where a rod holds the forearm.
+
+    Returns:
+        None where the joint counts from its neighbour anyway, or not both bounds are stated.
+    """
+    try:
+        lower, upper = (record.number(bound) for bound in _COUPLED)
+    except InputError:
+        return None
+    drivers = [one.driver for one in joint.followers]
+    if (
+        len(drivers) != 1
+        or lower is None
+        or upper is None
+        or not -math.pi < lower < upper < math.pi
+    ):
+        return None
+    reason = f"{_BETWEEN_ARMS}, by coupl_bound of MOC.cfg"
+    return CoupledRange(((joint.name, 1.0), (drivers[0], -1.0)), lower, upper, reason)
 
 
 def _partly(robot: Robot, stated: int) -> str:

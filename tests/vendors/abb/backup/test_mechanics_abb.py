@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -197,6 +198,30 @@ def test_coupled_and_calibrated_arms_and_their_loads() -> None:
     coupled, calibrated = found.robot.doubts[-2:]
     assert coupled.startswith("J1: the range") and calibrated.startswith("calibrated")
     assert "r1_load_3 20 kg" in found.lacks[-1]
+
+
+def test_of_an_arm_with_rods_the_angle_between_the_arms_is_bounded() -> None:
+    """J3 counts from the horizontal: its neighbour's bounds are those of J3 - J2."""
+    ranges = ((-180, 180), (-42, 85), (-20, 120), (-300, 300), (-120, 120), (-360, 360))
+    sections = dict(one_robot(ranges=ranges, kind="6660_1.90_205"))
+    third = sections["ARM"][2]
+    bounds = "-upper_joint_coupl_bound 1.22173 -lower_joint_coupl_bound -1.22173"
+    sections["ARM"] = [*sections["ARM"][:2], f"{third} {bounds}", *sections["ARM"][3:]]
+    (found,) = made(sections).robots
+    robot = found.robot
+    assert robot is not None and not any("between upper arm" in one for one in robot.doubts)
+    (coupled,) = robot.coupled_ranges
+    assert coupled.sum == "J3 - J2" and coupled.upper == -coupled.lower == 1.22173
+    folded = np.radians([0.0, 80.0, 0.0, 0.0, 30.0, 0.0])
+    free = replace(robot, coupled_ranges=())
+    pose = robot.flange_pose(folded)
+    assert min(np.abs(one.q - folded).max() for one in free.inverse(pose)) < 1e-6
+    for one in robot.inverse(pose):
+        assert abs(one.q[2] - one.q[1]) <= 1.22173 + 1e-9
+    sections["ARM"][2] = f"{third} -upper_joint_coupl_bound wide -lower_joint_coupl_bound -1.2"
+    (found,) = made(sections).robots
+    assert found.robot is not None and found.robot.coupled_ranges == ()
+    assert any(doubt.startswith("J3: the range") for doubt in found.robot.doubts)
 
 
 def test_joints_by_their_links() -> None:
