@@ -100,6 +100,39 @@ class PageShare:
 
 
 @dataclass(frozen=True)
+class PageGrowth:
+    """How a coat builds up.
+
+    Args:
+        times: (K + 1,) s.
+        laid: (P, K) whole steps that each interval of time lays on each point that is to be
+            painted, in the order of the vertices.
+        step: m.
+    """
+
+    times: Quantised
+    laid: Quantised
+    step: float
+
+
+@dataclass(frozen=True)
+class PageSpray:
+    """Where the gun sprays while it is on.
+
+    Args:
+        times: (T,) s.
+        nozzle: (T, 3) unit vectors in the world.
+        reach: m, from the TCP.
+        radius: of the cone there, m.
+    """
+
+    times: Quantised
+    nozzle: Quantised
+    reach: float
+    radius: float
+
+
+@dataclass(frozen=True)
 class PageCoat:
     """Paint on a part.
 
@@ -110,6 +143,8 @@ class PageCoat:
         target: m.
         tolerance: share of the target within which it is as it should be.
         strokes: (S, 2) s, when the gun is on.
+        growth: the coat as time runs; None where only its end is known.
+        spray: the cone.
     """
 
     node: int
@@ -118,6 +153,8 @@ class PageCoat:
     target: float
     tolerance: float
     strokes: Quantised | None = None
+    growth: PageGrowth | None = None
+    spray: PageSpray | None = None
 
 
 @dataclass(frozen=True)

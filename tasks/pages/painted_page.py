@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...core.arrays import FloatArray
 from ...core.driving.driven_program import DrivenProgram
 from ...core.motion.command.trajectory import Trajectory
 from ...core.robot.joint import Joint, JointKind
@@ -23,7 +22,6 @@ from ...drawing.page.arm_content import (
 from ...drawing.page.arms import page_arm
 from ...drawing.page.content import (
     Page,
-    PageCoat,
     PageColumn,
     PageRow,
     PageShare,
@@ -31,19 +29,17 @@ from ...drawing.page.content import (
     PageTable,
 )
 from ...drawing.page.curves import CHARTS, SPEED, Curve
-from ...drawing.page.packing import Quantised
-from ...drawing.page.shapes import page_mesh
 from ...drawing.page.track_content import (
     PageTrack,
 )
 from ...drawing.page.tracks import page_motion
-from ..results.painted import COLUMNS, MICRON, TOLERANCE, PaintedPart
+from ..results.painted import COLUMNS, MICRON, PaintedPart
 from ..results.runs import Run
+from .coat_content import page_coat
 from .program_tables import moves_table, notes_rows, page_shares, time_tables
 from .run_page import PageDraft, made_by
 
 if TYPE_CHECKING:
-    from ...problems.paint.executable.execute import Executable
     from ...problems.paint.spray.trajectory import PaintTrajectory
 
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -85,7 +81,7 @@ def painted_page(found: PaintedPart) -> Page:
         files,
         tables,
         CHARTS,
-        _coat(found, place, _strokes(found, made)),
+        page_coat(found, place),
         made_by=made_by(),
     )
 
@@ -105,35 +101,6 @@ def _facts(found: PaintedPart) -> dict[str, str]:
 def _coats(found: PaintedPart) -> PageTable:
     columns = [PageColumn(title) for title, _ in COLUMNS]
     return PageTable("By stage", columns, [PageRow(row) for row in found.rows()])
-
-
-def _coat(found: PaintedPart, place: Pose, strokes: FloatArray) -> PageCoat:
-    part = found.painting.judge.part
-    _, last = list(found.coats.items())[-1]
-    thickness = np.full(len(part.vertices), np.nan)
-    thickness[part.painted] = last.thickness
-    matrix = place.matrix()
-    vertices = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
-    return PageCoat(
-        0,
-        page_mesh(vertices, part.faces),
-        Quantised(thickness, 0.02 * MICRON),
-        last.target,
-        TOLERANCE,
-        Quantised(strokes, 1e-3),
-    )
-
-
-def _strokes(found: PaintedPart, made: Executable | None) -> FloatArray:
-    """(S, 2) s, when the gun is on."""
-    if made is None:
-        motion, begin = found.painting.best, 0.0
-    else:
-        motion = made.driven.trajectory
-        begin = float(made.driven.run.trajectory.t[-1]) - motion.total_duration
-    on = np.concatenate([[False], motion.painting, [False]]).astype(np.int8)
-    first, last = np.flatnonzero(np.diff(on) > 0), np.flatnonzero(np.diff(on) < 0)
-    return np.column_stack([motion.times[first], motion.times[last]]) + begin
 
 
 def _gun_alone(motion: PaintTrajectory) -> tuple[PageArm, PageTrack]:

@@ -1,6 +1,6 @@
 // Paint on a part: its thickness as colours, how it is spread, and when the gun is on.
 
-import { BufferAttribute, DoubleSide, Mesh, MeshLambertMaterial } from "three";
+import { BufferAttribute, ConeGeometry, DoubleSide, Mesh, MeshBasicMaterial, MeshLambertMaterial, Vector3 } from "three";
 import { css, diverging } from "./colours.js";
 import { h, svg } from "./dom.js";
 import { meshOf } from "./solids.js";
@@ -15,26 +15,122 @@ const shareOf = (coat, value) => 0.5 + (value / coat.target - 1) / (4 * coat.tol
 
 const colourOf = (coat, value) => (Number.isFinite(value) ? diverging(shareOf(coat, value)) : BARE);
 
+/** For each vertex the corners of faces at it: of vertex v those from first[v] to first[v + 1]. */
+function cornersOf(faces, count) {
+  const first = new Uint32Array(count + 1);
+  for (const column of faces) for (const v of column) first[v + 1] += 1;
+  for (let v = 0; v < count; v += 1) first[v + 1] += first[v];
+  const next = first.slice();
+  const corners = new Uint32Array(first[count]);
+  for (let k = 0; k < faces[0].length; k += 1) {
+    for (let i = 0; i < 3; i += 1) corners[next[faces[i][k]]++] = 3 * k + i;
+  }
+  return { first, corners };
+}
+
+/** What each interval of time lays: points and steps, without those on which it lays nothing. */
+function risesOf(growth, known) {
+  return growth.laid.map((column) => {
+    const points = [];
+    const steps = [];
+    column.forEach((value, k) => {
+      if (!value) return;
+      points.push(known[k]);
+      steps.push(value * growth.step);
+    });
+    return { points: Uint32Array.from(points), steps: Float32Array.from(steps) };
+  });
+}
+
 export class CoatView {
   constructor(coat) {
     this.coat = coat;
     const { faces } = coat.mesh;
-    const colours = new Float32Array(9 * faces[0].length);
-    for (let k = 0; k < faces[0].length; k += 1) {
-      for (let i = 0; i < 3; i += 1) {
-        const colour = colourOf(coat, coat.thickness[faces[i][k]]);
-        // Colours of materials are linear, those of a palette are not.
-        colours.set(colour.map((c) => c ** 2.2), 9 * k + 3 * i);
-      }
-    }
+    const count = coat.thickness.length;
+    this.known = Array.from(coat.thickness.keys()).filter((v) => Number.isFinite(coat.thickness[v]));
+    this.at = cornersOf(faces, count);
+    this.colours = new BufferAttribute(new Float32Array(9 * faces[0].length), 3);
+    for (let v = 0; v < count; v += 1) this.paint(v, coat.thickness[v], 1);
     const geometry = meshOf(coat.mesh);
-    geometry.setAttribute("color", new BufferAttribute(colours, 3));
+    geometry.setAttribute("color", this.colours);
     this.mesh = new Mesh(geometry, new MeshLambertMaterial({ vertexColors: true, side: DoubleSide }));
+    this.rises = coat.growth ? risesOf(coat.growth, this.known) : null;
+    this.base = new Float32Array(count);
+    this.until = null; // intervals that are in the base; null where the whole coat is shown
+    this.cone = this.coneObject();
+  }
+
+  coneObject() {
+    const { spray } = this.coat;
+    if (!spray) return null;
+    const geometry = new ConeGeometry(spray.radius, spray.reach, 28, 1, true).translate(0, -spray.reach / 2, 0);
+    const material = new MeshBasicMaterial({ color: 0xd55e00, transparent: true, opacity: 0.28, depthWrite: false, side: DoubleSide });
+    const cone = new Mesh(geometry, material);
+    cone.renderOrder = 5;
+    return cone;
   }
 
   build(view) {
     view.root.add(this.mesh);
+    if (this.cone) view.root.add(this.cone);
     this.mesh.visible = view.show.coat;
+  }
+
+  /** The colour of a vertex; share: how far the coat is on its way, as bare metal fades. */
+  paint(vertex, value, share) {
+    const [r, g, b] = colourOf(this.coat, value).map((c, i) => ((1 - share) * BARE[i] + share * c) ** 2.2);
+    // Colours of materials are linear, those of a palette are not.
+    for (let k = this.at.first[vertex]; k < this.at.first[vertex + 1]; k += 1) this.colours.setXYZ(this.at.corners[k], r, g, b);
+  }
+
+  grown(vertex, value) {
+    this.paint(vertex, value, Math.min(1, value / (0.5 * this.coat.target)));
+  }
+
+  /** Show the coat as it is at a time; tip: where the gun's TCP is. */
+  show(t, tip, shown) {
+    this.aim(t, tip, shown);
+    if (!this.rises || !shown) return;
+    const { times } = this.coat.growth;
+    if (t >= times.at(-1)) {
+      if (this.until === null) return;
+      for (const v of this.known) this.paint(v, this.coat.thickness[v], 1);
+      this.until = null;
+    } else {
+      this.upTo(Math.max(before(times, t), 0), t);
+    }
+    this.colours.needsUpdate = true;
+  }
+
+  upTo(interval, t) {
+    if (this.until === null || interval < this.until) {
+      this.base.fill(0);
+      this.until = 0;
+      for (const v of this.known) this.grown(v, 0);
+    }
+    for (; this.until < interval; this.until += 1) {
+      const { points, steps } = this.rises[this.until];
+      points.forEach((v, k) => this.grown(v, (this.base[v] += steps[k])));
+    }
+    const { times } = this.coat.growth;
+    const share = Math.min(Math.max((t - times[interval]) / (times[interval + 1] - times[interval]), 0), 1);
+    const { points, steps } = this.rises[interval];
+    points.forEach((v, k) => this.grown(v, this.base[v] + share * steps[k]));
+  }
+
+  /** Thickness at the points that are to be painted, at the last of the times kept before the one shown. */
+  thickness() {
+    return this.until === null ? this.known.map((v) => this.coat.thickness[v]) : this.known.map((v) => this.base[v]);
+  }
+
+  aim(t, tip, shown) {
+    if (!this.cone) return;
+    this.cone.visible = Boolean(shown && this.sprays(t));
+    if (!this.cone.visible) return;
+    const { times, nozzle } = this.coat.spray;
+    const k = Math.max(before(times, t), 0);
+    this.cone.position.set(...tip);
+    this.cone.quaternion.setFromUnitVectors(new Vector3(0, -1, 0), new Vector3(...nozzle.map((column) => column[k])).normalize());
   }
 
   /** Whether the gun is on; undefined where nobody says. */

@@ -23,12 +23,12 @@ const VIRIDIS = [
   [170, 220, 50],
   [253, 231, 37],
 ];
-// Of deviations: blue, pale, orange.
+// Of deviations: blue, straw, orange; the middle one stands out from light and dark ground.
 const DIVERGING = [
   [5, 113, 176],
-  [146, 197, 222],
-  [244, 244, 238],
-  [253, 184, 99],
+  [122, 178, 196],
+  [216, 205, 128],
+  [243, 160, 80],
   [200, 80, 8],
 ];
 

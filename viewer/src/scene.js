@@ -265,6 +265,10 @@ export class SceneView {
     for (const arm of this.arms) arm.pose(this.session.timeOf(arm.track));
     for (const path of this.paths) path.pose(this.session.timeOf(path.track));
     const { track } = this.session;
+    if (this.coat && track) {
+      const t = this.session.timeOf(track);
+      this.coat.show(t, track.tcp(t), this.show.coat);
+    }
     const near = track?.clearanceAt(this.session.timeOf(track));
     this.gap.visible = Boolean(near) && this.show.obstacles;
     if (near) {

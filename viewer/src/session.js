@@ -11,7 +11,8 @@ export class Session extends EventTarget {
     const solid = this.tracks.filter((track) => !track.ghost);
     this.active = (solid.at(-1) ?? this.tracks.at(-1))?.index ?? -1;
     this.sync = "clock";
-    this.t = 0;
+    // A coat is first seen as it is in the end; playback begins at the beginning.
+    this.t = page.coat?.growth ? (this.tracks[this.active]?.duration ?? 0) : 0;
     this.playing = false;
     this.speed = 1;
     this.loop = true;

@@ -104,6 +104,25 @@ def test_paint(opened: Opened, folder: Path) -> None:
     view = opened(page_bytes(painted))
     assert view.evaluate("flyby.view.coat.mesh.geometry.attributes.color.count") > 100
     assert "of them within ±10 %" in view.locator(".drawing").inner_text()
+    # The coat builds up: at each time kept it is what the gun has laid until then.
+    growth = page.coat.growth
+    assert growth is not None
+    laid = np.cumsum(growth.laid.values, axis=1) * growth.step
+    np.testing.assert_allclose(laid[:, -1], known, atol=0.51 * growth.step + 0.02e-6)
+    times, motion = growth.times.values, painted.painting.best
+    for k in (len(times) // 3, 2 * len(times) // 3):
+        begun = np.clip((times[k] - motion.times[:-1]) / motion.duration, 0.0, 1.0)
+        rates = painted.painting.judge.deposition.rates(motion)
+        wanted = rates @ (motion.duration * begun)
+        np.testing.assert_allclose(laid[:, k - 1], wanted, atol=0.6 * growth.step)
+        view.evaluate("(t) => { flyby.session.seek(t + 2e-3); flyby.view.pose(); }", times[k])
+        drawn = view.evaluate("flyby.view.coat.thickness()")
+        np.testing.assert_allclose(drawn, laid[:, k - 1], atol=1e-9)
+        assert view.evaluate("flyby.view.coat.cone.visible") == view.evaluate(
+            "flyby.view.coat.sprays(flyby.session.t)"
+        )
+    view.evaluate("(t) => { flyby.session.seek(t); flyby.view.pose(); }", 0.0)
+    assert not any(view.evaluate("flyby.view.coat.thickness()"))
     # The gun's tip is where it was planned.
     best = painted.painting.best
     middle = 0.5 * best.total_duration
