@@ -2,9 +2,10 @@
 
     python benchmarks/station.py [--case four-robots] [--pairs 2000] [--json]
 
-``crossing``: two robots whose tools cross one line at one instant; ``handshake``: the example of
-two robots, with the interlock that could be given back earlier; ``four-robots``: 100 moves each,
-two facing pairs that share the middle under interlocks, and the same with a stop at every point;
+``crossing``: two robots whose tools cross one line, at one instant but for a signal; ``handshake``:
+the example of two robots, with the interlock that could be given back earlier; ``studs``: the
+example of four robots; ``four-robots``: 100 moves each, two facing pairs that share the middle
+under interlocks; the last two beside the same with a stop at every point;
 ``random-pairs``: programs at random, proofs beside sampling at ten times the controller's rate.
 CPU time of the process, kernels compiled; emulation and bounds of deviation are not counted.
 """
@@ -16,32 +17,39 @@ import time
 from collections.abc import Callable, Iterator
 from itertools import combinations
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from report import Figure, main
 
-import flyby
 from flyby.core.cell.floor import bare_cell
 from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
+from flyby.core.program.signal import Level, SetSignal, WaitSignal
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
+from flyby.core.station.actions import Action
+from flyby.core.station.awaited import bearing
 from flyby.core.station.clearances import StationProver
 from flyby.core.station.clock import StationClock
+from flyby.core.station.interlocks import savings
 from flyby.core.station.orders import explore
+from flyby.core.station.station import RobotStation, StationRobot, Wire
+from flyby.tasks.station.opening import open_station
 from flyby.validation.scenes.four_robots import four_robots
 
-EXAMPLE = Path(__file__).parents[1] / "examples/two_robots/station.toml"
-CASES = ("crossing", "handshake", "four-robots", "random-pairs")
+EXAMPLES = Path(__file__).parents[1] / "examples"
+CASES = ("crossing", "handshake", "studs", "four-robots", "random-pairs")
 JITTER = 0.05
 CLEARANCE = 0.01
 HOME = np.array([0.0, -1.2, 1.6, -1.9, -1.57, 0.0])
+ACROSS = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 REACH = np.array([1.0, 0.5, 0.6, 0.5, 0.5, 0.5])
 
 
@@ -53,43 +61,69 @@ def timed(job: Callable[[], object]) -> tuple[float, object]:
 
 
 def crossing() -> Iterator[Figure]:
-    """Two robots drive the same joint turn towards each other and back."""
-    prover = PairProver(_motion(Pose(), 1, turned=True), _motion(Pose((0.9, 0.0, 0.0)), 2))
-    prover.prove(CLEARANCE, _in_time(0.0))
-    cpu, verdict = timed(lambda: prover.prove(CLEARANCE, _in_time(2 * JITTER)))
-    yield Figure("crossing", "proof_cpu_s", cpu, "s")
-    yield Figure("crossing", "conflicts_found", len(verdict.conflicts), "")  # type: ignore[attr-defined]
-    yield Figure("crossing", "dense_mm", 1e3 * _sampled(prover), "mm")
+    """Two robots drive towards each other over one line; the second may when the first has been
+    there and back."""
+    station, actions = _crossing(locked=True)
+    free, its_actions = _crossing(locked=False)
+    case = "crossing"
+    yield from _figures(case, station, actions)
+    prover = StationProver(free, its_actions).prover("a", "b")
+    conflicts = prover.prove(CLEARANCE, _in_time(2 * JITTER)).conflicts
+    yield Figure(case, "conflicts_without_interlock", len(conflicts), "")
+    yield Figure(case, "dense_mm without interlock", 1e3 * _sampled(prover), "mm")
 
 
 def handshake() -> Iterator[Figure]:
-    """The example."""
-    made = flyby.station(EXAMPLE, interlocks=True)
-    yield Figure("handshake", "station_time_s", made.duration, "s")
-    yield Figure(
-        "handshake", "proven_mm", 1e3 * made.station.clearance if made.clear else 0.0, "mm"
-    )
-    yield Figure("handshake", "dense_mm", 1e3 * min(p.least for p in made.clearances), "mm")
-    saved = max((saving.seconds for saving in made.savings), default=0.0)
-    yield Figure("handshake", "interlock_time_saved_s", saved, "s")
+    """The example of two robots."""
+    opened = open_station(EXAMPLES / "two_robots/station.toml", lambda _: None)
+    yield from _figures("handshake", opened.station, opened.actions)
+
+
+def studs() -> Iterator[Figure]:
+    """The example of four robots that weld studs, beside the same with a stop at every point."""
+    opened = open_station(EXAMPLES / "stud_station/station.toml", lambda _: None)
+    with TemporaryDirectory() as folder:
+        for file in (EXAMPLES / "stud_station").iterdir():
+            text = file.read_text().replace("z20", "fine")
+            (Path(folder) / file.name).write_text(text)
+        stopping = open_station(Path(folder) / "station.toml", lambda _: None)
+    stops = StationClock(stopping.station, stopping.actions).run().duration
+    yield from _figures("studs", opened.station, opened.actions, stops)
 
 
 def four() -> Iterator[Figure]:
     """Four robots of 100 moves."""
     station, actions = four_robots()
-    run = StationClock(station, actions).run()
     stopping, its_actions = four_robots(stops=True)
     stops = StationClock(stopping, its_actions).run().duration
-    yield Figure("four-robots", "station_time_s", run.duration, "s", "stops only", stops)
+    yield from _figures("four-robots", station, actions, stops)
+
+
+def _figures(case: str, station, actions, stops: float | None = None) -> Iterator[Figure]:
+    """What every case has."""
+    run = StationClock(station, actions).run()
+    peer = () if stops is None else ("stops only", stops)
+    yield Figure(case, "station_time_s", run.duration, "s", *peer)
+    actions = bearing(station, actions)
     _prove_all(StationProver(station, actions), station, run, actions)  # compiles
     swept, prover = timed(lambda: StationProver(station, actions))
-    yield Figure("four-robots", "sweep_cpu_s", swept, "s")
-    for name, cpu, proven in _prove_all(prover, station, run, actions):
-        yield Figure("four-robots", f"proof_cpu_s {name}", cpu, "s")
-        yield Figure("four-robots", f"proven_mm {name}", proven, "mm")
+    yield Figure(case, "sweep_cpu_s", swept, "s")
+    rows = _prove_all(prover, station, run, actions)
+    yield Figure(case, "proof_cpu_s", sum(cpu for _, cpu, _ in rows), "s")
+    yield Figure(case, "proven_mm", max(proven for _, _, proven in rows), "mm")
+    for name, cpu, proven in rows:
+        yield Figure(case, f"proof_cpu_s {name}", cpu, "s")
+        yield Figure(case, f"proven_mm {name}", proven, "mm")
+    orders = explore(station, actions)
+    clearances = prover.all(run, JITTER, orders)
+    yield Figure(case, "dense_mm", 1e3 * min(pair.least for pair in clearances), "mm")
+    found = savings(station, actions, prover, clearances, orders)
+    saved = max((saving.seconds for saving in found), default=0.0)
+    yield Figure(case, "interlock_time_saved_s", saved, "s")
 
 
 def _prove_all(prover, station, run, actions) -> list[tuple[str, float, float]]:
+    """CPU seconds of each question over all pairs, and the clearance in mm where it is proven."""
     orders = explore(station, actions)
     spent, fine = dict.fromkeys(("in time", "any time", "interlocked"), 0.0), {}
     for one, other in combinations(station.members, 2):
@@ -107,6 +141,29 @@ def _prove_all(prover, station, run, actions) -> list[tuple[str, float, float]]:
             spent[name] += cpu
             fine[name] = fine.get(name, True) and verdict.proven
     return [(name, spent[name], 1e3 * CLEARANCE if fine[name] else 0.0) for name in spent]
+
+
+def _crossing(locked: bool) -> tuple[RobotStation, dict[str, tuple[Action, ...]]]:
+    """Two UR5e that turn over the line between them, and back."""
+    members, actions = {}, {}
+    for name, base in (
+        ("a", Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))),
+        ("b", Pose((1.0, 0, 0))),
+    ):
+        robot = find_robot("ur/ur5e").with_base(base)
+        side, other = (JointTarget(tuple(HOME + ACROSS * sign)) for sign in (1.0, -1.0))
+        moves = tuple(MoveJ(there, Speed(joint=0.8)) for there in (other, side))
+        program = Program(moves, start=side, name=name)
+        controller = Controller(find_vendor("ur"), robot)
+        run = controller.run(program, None, None)
+        cell = bare_cell(robot, "ur", floor=False)
+        members[name] = StationRobot(name, program, controller, cell, run)
+        does = SetSignal("out", True) if name == "a" else WaitSignal(Level("in", True))
+        when = run.duration if name == "a" else 0.0
+        act = Action(does, when, 1 if name == "a" else -1, str(does), None)
+        actions[name] = (act,) if locked else ()
+    wires = (Wire("a.out", "b.in", 0.01, 0.04),) if locked else ()
+    return RobotStation(members, wires, clearance=CLEARANCE), actions
 
 
 def random_pairs(count: int) -> Iterator[Figure]:
@@ -168,7 +225,7 @@ def _sampled(prover: PairProver) -> float:
 
 def measure(case: str, pairs: int) -> Iterator[Figure]:
     """The figures of a case."""
-    jobs = {"crossing": crossing, "handshake": handshake, "four-robots": four}
+    jobs = {"crossing": crossing, "handshake": handshake, "studs": studs, "four-robots": four}
     yield from random_pairs(pairs) if case not in jobs else jobs[case]()
 
 

@@ -282,7 +282,7 @@ class _Search:
             # What comes behind these is not known.
             unknown, every = PairBounds.unknown(1), np.ones(1, dtype=bool)
             self._note(items[-1:], unknown, every, ConflictCause.EXHAUSTED)
-            return items[:0]
+            return np.empty((0, 3), dtype=np.int64)
         return self._meeting(items)
 
     def _meeting(self, items: IntArray) -> IntArray:
