@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from flyby.tasks.read import read
     from flyby.tasks.record import record
     from flyby.tasks.station.check import station_check
+    from flyby.tasks.station.optimize import station_optimize
     from flyby.tasks.station.station import station
     from flyby.tasks.station.zones import station_zones
     from flyby.tasks.translate import translate
@@ -63,6 +64,7 @@ __all__ = [
     "show",
     "station",
     "station_check",
+    "station_optimize",
     "station_zones",
     "translate",
     "tune",
@@ -82,6 +84,7 @@ _ELSEWHERE = {
     "show": "pages.show",
     "station": "station.station",
     "station_check": "station.check",
+    "station_optimize": "station.optimize",
     "station_zones": "station.zones",
 }
 """Files of `flyby.tasks` that are not called as what they hold."""

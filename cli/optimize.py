@@ -17,6 +17,7 @@ from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
 from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program, writable_robot
+from .changed_station import changed_station, is_station, refuse_given
 from .output.console import print_json, print_table, progress
 from .output.delivery import OtherVendor, deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution
@@ -71,9 +72,13 @@ def optimize(
 ) -> None:
     """Move via points and size zones so that the program becomes faster, and prove it.
 
-    Only a program that is proven to keep its clearance, as read from the new text, is written.
+    Only a program that is proven to keep its clearance, as read from the new text, is written. Of a
+    station file the programs of all robots change, and robots that would wait drive slower.
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
+    if is_station(program):
+        _station(program, source, options, places, json)
+        return
     places.check()
     check_page(report, places.inputs, force)
     if plot is not None:
@@ -101,6 +106,23 @@ def optimize(
     else:
         _tell(program, delivery.made, cell, delivery.written)
     delivery.end(told=not json)
+
+
+def _station(
+    file: Path, source: SourceOptions, options: OptimizeOptions, places: FilePlaces, json: bool
+) -> None:
+    """The programs of all robots of a station."""
+    from ..tasks.station.optimize import StationOptimizeOptions, station_optimize_with
+
+    taken = (
+        *("keep", "free", "own", "zones_only", "predefined", "tilt", "seed"),
+        *("starts", "generations"),
+    )
+    refuse_given([source, options], taken)
+    wanted = StationOptimizeOptions(**{name: getattr(options, name) for name in taken})
+    changed_station(
+        file, lambda say: station_optimize_with(file, replace(wanted, report=say)), places, json
+    )
 
 
 def _check_places(out: Path | None, in_place: bool, vias: str, other: str | None) -> None:

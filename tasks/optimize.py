@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..problems.improve.progress import Progress
     from ..problems.improve.solution import Solution
+    from ..problems.improve.solve_round_verify import Beside
     from ..problems.improve.waypoints import Effort
 
 CHANGE = "change"
@@ -74,6 +75,19 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
         InputError: naming the option.
         MotionError: the program cannot be driven, or collides as it is.
     """
+    return optimize_beside(program, options, None)
+
+
+optimize = by_keywords(optimize_with, OptimizeOptions)
+
+
+def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside | None) -> Solution:
+    """The same beside other robots.
+
+    Args:
+        program, options: see `optimize_with`.
+        beside: what the other robots say of a program; None where there are none.
+    """
     from ..problems.improve.waypoints import Freedom, optimize_waypoints
 
     program, setup = with_setup(program, options)
@@ -96,15 +110,13 @@ def optimize_with(program: Program, options: OptimizeOptions) -> Solution:
             f"{state.stage}: {state.done} of {state.total}{gained} (Ctrl-C ends with the best)"
         )
 
+    task = replace(task, beside=beside)
     if options.zones_only:
         task = replace(task, freedom=Freedom.ZONES)
     controller = controller_of(program, setup)
     effort = effort_of(options.starts, options.generations, options.seed)
     made = optimize_waypoints(controller, program, cell, task, effort, texts.read_back, report)
     return delivered(made, texts, setup, idle_notes(program, options, task))
-
-
-optimize = by_keywords(optimize_with, OptimizeOptions)
 
 
 def effort_of(starts: int | None, generations: int | None, seed: int) -> Effort:

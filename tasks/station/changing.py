@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,8 +19,11 @@ if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...problems.improve.solution import Solution
     from ...problems.improve.solve_round_verify import Beside
+    from ...problems.improve.station.feasibility import StationFeasibility
     from ..results.changed_stations import ChangedStation
 
+Later = Callable[["StationFeasibility", "Mapping[str, Share]", "dict[str, Solution]"], None]
+"""What is done when all robots are improved: it may put other solutions in the place of these."""
 Improve = Callable[["Program", "Share", "Beside"], "Solution"]
 """Makes of a robot's program a better one, beside the others."""
 
@@ -65,7 +68,10 @@ class Share:
 
 
 def changed_station(
-    source: str | Path, options: StationChangeOptions, improve: Improve
+    source: str | Path,
+    options: StationChangeOptions,
+    improve: Improve,
+    later: Later | None = None,
 ) -> ChangedStation:
     """A station whose programs are improved, the robot that ends last first.
 
@@ -73,6 +79,7 @@ def changed_station(
         source: a station file.
         options: what stays.
         improve: what is done to each.
+        later: what is done to all behind that.
 
     Raises:
         InputError: a file cannot be read, or an option names nothing.
@@ -110,6 +117,8 @@ def changed_station(
                 continue
         solutions[name] = made
         notes += [replace(note, message=f"{name}: {note.message}") for note in made.notes]
+    if later is not None:
+        later(feasibility, shares, solutions)
     return ChangedStation(
         Path(source),
         opened.station,

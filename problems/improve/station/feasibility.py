@@ -139,6 +139,11 @@ class StationFeasibility:
         self.state = state
         return True
 
+    def ordered_of(self, name: str, run: Run) -> tuple[Action, ...]:
+        """The actions of a robot that bear on others, in another run of it."""
+        actions = {**self.state.actions, name: actions_of(run, self._words[name])}
+        return bearing(self.state.station, actions)[name]
+
     def _with(self, name: str, run: Run) -> StationState:
         members = dict(self.state.station.members)
         members[name] = replace(members[name], program=run.program, run=run)

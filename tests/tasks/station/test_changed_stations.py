@@ -93,3 +93,40 @@ def test_options_say_of_which_robot(station: Path) -> None:
         flyby.station_zones(station, keep=["left.9"])
     with pytest.raises(FlybyError, match="nowhere"):
         flyby.station_zones(station, keep=["nowhere"])
+
+
+def test_robots_that_would_wait_drive_slower(tmp_path: Path) -> None:
+    """The left one ends early, the right one waits for it first: what it drives then is no slower
+    than what the wait leaves."""
+    made = flyby.station_optimize(EXAMPLE / "station.toml", zones_only=True)
+    before, after = made.before, made.after
+    assert after.duration < 0.98 * before.duration
+    fastest = [
+        abs(s.station.members["left"].run.trajectory.dq[-200:]).max() for s in (before, after)
+    ]
+    assert fastest[1] < 0.7 * fastest[0]
+    assert after.run.schedules["left"].end <= after.duration
+    (spell,) = after.run.schedules["right"].waits
+    assert spell.end < before.run.schedules["right"].waits[0].end
+    flyby.write(made, tmp_path / "out")
+    again = flyby.station(tmp_path / "out/station.toml")
+    assert again.clear and again.duration == pytest.approx(after.duration, abs=1e-6)
+    quick = flyby.station_optimize(EXAMPLE / "station.toml", zones_only=True, full_speed=True)
+    assert quick.after.duration == pytest.approx(after.duration, rel=1e-3)
+    assert quick.after.run.schedules["left"].end < after.run.schedules["left"].end - 1.0
+
+
+def test_a_robot_comes_slower_to_a_wait(tmp_path: Path) -> None:
+    """The second drives to a wait in a second, and may go on after three."""
+    left = [go("left", 1300, (-1) ** k * 300, "fine") for k in range(3)]
+    right = [go("right", 2050, 300, "fine"), go("right", 2050, 0, "fine"), "WaitDI diGo, 1"]
+    programs = {"left": [*left, "SetDO doGo, 1"], "right": [*right, go("right", 2050, 300, "fine")]}
+    file = write(tmp_path, programs)
+    file.write_text(file.read_text() + '[links]\n"left.doGo" = "right.diGo"\n')
+    made = flyby.station_optimize(file, zones_only=True)
+    (before,), (after,) = (
+        [s for s in state.run.schedules["right"].waits if s.end > s.begin]
+        for state in (made.before, made.after)
+    )
+    assert after.end - after.begin < 0.5 * (before.end - before.begin)
+    assert made.after.duration <= made.before.duration
