@@ -19,6 +19,7 @@ from .checks.hostility import HostilityChecks
 from .checks.language import LanguageChecks
 from .checks.motion_model import MotionModelChecks
 from .checks.patching import PatchingChecks
+from .checks.planted import PlantedFaults
 from .checks.recording import RecordingChecks
 from .checks.sources import SourceChecks
 from .checks.words import WordsChecks
@@ -35,5 +36,6 @@ class VendorConformance(
     PatchingChecks,
     RecordingChecks,
     EmulationChecks,
+    PlantedFaults,
 ):
     """All checks; ``name`` is the vendor's."""

@@ -64,7 +64,11 @@ class GoldenChecks(Subject):
                 continue
             robot = self.vendor.robot(text.robot)
             program = self.read_golden(text)
-            route = Controller(self.vendor, robot).plan(program).route
+            try:
+                route = Controller(self.vendor, robot).plan(program).route
+            except FlybyError as error:
+                what = f"{text.about!r} cannot be driven by {text.robot}: {error}"
+                raise AssertionError(told(what, look="stands")) from error
             q = dict(zip(route.moves, route.ends.q[:, 1], strict=True))
             q.setdefault(0, route.ends.q[0, 0])
             for index, (row, move) in enumerate(zip(rows, program.moves, strict=True)):
@@ -126,7 +130,7 @@ class GoldenChecks(Subject):
             robot = self.vendor.robot(str(text.robot))
             program = self.read_golden(text)
             sources = self.written(program, robot)
-            again = self.read_back(sources, robot)
+            again = self.read_written(sources, robot)
             self.check_same(program, again, sources)
 
     def test_kept_statements_become_comments(self) -> None:
@@ -142,7 +146,7 @@ class GoldenChecks(Subject):
                 sources = self.vendor.write(program, robot, options)
             except FlybyError as error:
                 pytest.skip(f"{self.name} writes no comments: {error}")
-            again = self.read_back(sources, robot)
+            again = self.read_written(sources, robot)
             left = [s.text for s in again.statements if isinstance(s, Opaque)]
             written = " ".join("\n".join(sources.values()).split())
             for one in kept:

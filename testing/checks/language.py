@@ -51,7 +51,7 @@ class LanguageChecks(Subject):
     def test_what_is_written_is_read_again(self, data: st.DataObject) -> None:
         self.need("reader", "writer")
         robot, program, sources = self._written(data)
-        again = self.read_back(sources, robot)
+        again = self.read_written(sources, robot)
         self.check_same(program, again, sources, robot)
 
     @PROGRAM_EXAMPLES

@@ -28,7 +28,7 @@ PARTS = ("target", "via", "speed", "zone")
 
 
 @dataclass(frozen=True)
-class Change:
+class PartChange:
     """A part of a move that was changed."""
 
     move: int
@@ -98,7 +98,7 @@ class PatchingChecks(Subject):
                 f"{change.origin.datum or 'a setting'} is used in {text!r}, and is not reported"
             )
 
-    def _change(self, data: st.DataObject, program: Program) -> Change:
+    def _change(self, data: st.DataObject, program: Program) -> PartChange:
         """One part of one move with other numbers."""
         index = data.draw(st.integers(0, len(program.moves) - 1))
         move = program.moves[index]
@@ -111,7 +111,7 @@ class PatchingChecks(Subject):
         assert isinstance(move.origin, MoveOrigin), "moves that were read know their origin"
         origin = getattr(move.origin, part)
         changed = program.with_moves(tuple(moves))
-        return Change(index, part, changed, origin, move.origin.statement)
+        return PartChange(index, part, changed, origin, move.origin.statement)
 
     def _other(self, part: str, move: Move) -> st.SearchStrategy[Any]:
         if part == "zone":
@@ -151,7 +151,7 @@ def shifted(target: Target, step: float) -> Target:
     return replace(target, pose=replace(target.pose, position=(x + step, y, z)))
 
 
-def must_be_patched(program: Program, change: Change) -> bool:
+def must_be_patched(program: Program, change: PartChange) -> bool:
     """Whether all numbers of the part stand in the text, and no other move reads them."""
     old, new = (getattr(p.moves[change.move], change.part) for p in (program, change.program))
     same_words = type(old) is type(new) and not isinstance(old, Fine)
@@ -165,7 +165,7 @@ def _stated(speed: object) -> list[str]:
     return [name for name in speed.__slots__ if getattr(speed, name) is not None]  # type: ignore[attr-defined]
 
 
-def check_stretches(before: Files, after: Files, change: Change) -> None:
+def check_stretches(before: Files, after: Files, change: PartChange) -> None:
     """Only the part's own numbers and the move's own statement have become other text, and only
     whole lines, declarations of new data, have come."""
     spans = [change.origin.span, change.statement]

@@ -18,10 +18,11 @@ from ...core.program.target import JointTarget, PoseTarget, Target
 from ...core.program.zone import Fine, Radius
 from ...core.source.not_executed.search import not_executed
 from ...core.source.patch.edits import alike, difference, reading_of
+from ...core.source.reading import Files, Reading
 from ...core.spatial.pose import Pose
 from ..golden import GoldenText
 from .golden import stated_speeds
-from .patching import PARTS, Change, check_stretches, must_be_patched, shifted
+from .patching import PARTS, PartChange, check_stretches, must_be_patched, shifted
 from .subject import Subject
 from .telling import line_of, told
 
@@ -111,11 +112,9 @@ class SourceChecks(Subject):
                         look="the patcher: literals that one move owns are changed in place",
                     )
                     continue
-                again = before.again(files)
-                found = difference(change.program, again)
+                found = _difference(change.program, before, files)
                 assert found is None, told(
-                    f"{what} is patched, and the text says another program "
-                    f"(move {found and found[0] + 1}: {found and found[1]})",
+                    f"{what} is patched, and the text says another program: {found}",
                     written=new,
                     read="\n".join(file.text for file in files.values()),
                     look="where the patcher writes, how it rounds, and what else reads the number",
@@ -133,6 +132,8 @@ class SourceChecks(Subject):
                 continue
             program = self.read_golden(text)
             rows = [row for row in text.statements if row["kind"].startswith("Move")]
+            stated = {(k, part) for k, row in enumerate(rows) for part in row.get("not_driven", ())}
+            tried = set[Place]()
             for change in changes(program):
                 if change.part not in ("target", "via"):
                     continue
@@ -142,7 +143,8 @@ class SourceChecks(Subject):
                     continue
                 after = reading_of(program).again(files)
                 reported = not_executed(program, after, wording)
-                wanted = change.part in rows[change.move].get("not_driven", ())
+                tried.add((change.move, change.part))
+                wanted = (change.move, change.part) in stated
                 assert bool(reported) == wanted, told(
                     f"{text.about!r}: the {change.part} of move {change.move + 1} is "
                     f"{'used' if wanted else 'used nowhere'} in code that is not driven, and "
@@ -151,6 +153,11 @@ class SourceChecks(Subject):
                     read=reported,
                     look="Wording: names, mentions, routines, heads, what is silent",
                 )
+            assert stated <= tried, told(
+                f"{text.about!r}: {_shown(stated - tried)} cannot be patched, and nothing shows "
+                "whether code is found that is not driven",
+                look="the golden text: let one move own a datum that such code uses",
+            )
 
     def test_the_wording_finds_what_texts_say(self) -> None:
         self.need("reader")
@@ -226,7 +233,7 @@ class SourceChecks(Subject):
         return self.vendor.speaks.wording
 
 
-def changes(program: Program) -> Iterator[Change]:
+def changes(program: Program) -> Iterator[PartChange]:
     """Each part of each move with other numbers, one after the other."""
     for index, move in enumerate(program.moves):
         if move.origin is None:
@@ -240,7 +247,7 @@ def changes(program: Program) -> Iterator[Change]:
             moves[index] = replace(move, **{part: new})
             changed = program.with_moves(tuple(moves))
             origin = getattr(move.origin, part)
-            yield Change(index, part, changed, origin, move.origin.statement)
+            yield PartChange(index, part, changed, origin, move.origin.statement)
 
 
 def _other(part: str, old: Any, move: Move) -> Any:
@@ -258,6 +265,17 @@ def _other(part: str, old: Any, move: Move) -> Any:
     if isinstance(old, Radius):
         return old.resized(0.5 * old.tcp)
     return replace(old, **{fields(old)[0].name: 0.5 * getattr(old, fields(old)[0].name)})
+
+
+def _difference(wanted: Program, before: Reading, files: Files) -> str | None:
+    """In what the program of patched files differs from the wanted one."""
+    try:
+        found = difference(wanted, before.again(files))
+    except FlybyError as error:
+        return str(error)
+    if found is None:
+        return None
+    return f"another {found[1]} of move {found[0] + 1}" if found[0] >= 0 else found[1]
 
 
 def _literals(program: Program) -> dict[Span, set[Place]]:

@@ -85,7 +85,7 @@ class Subject:
     periods: tuple[float, ...] = (0.024, 0.12)
     """s between samples of a log that the controllers take."""
 
-    @property
+    @cached_property
     def vendor(self) -> Vendor:
         """The vendor."""
         return find_vendor(self.name)
@@ -198,7 +198,12 @@ class Subject:
             for file, said in text.files.items():
                 (Path(folder) / file).write_text(said, "utf-8")
             main = Path(folder) / next(iter(text.files))
-            return self.vendor.read_file(main, text.entry, robot)
+            try:
+                return self.vendor.read_file(main, text.entry, robot)
+            except FlybyError as error:
+                look = "the reader: the text runs on a controller, by its author"
+                what = f"{self.name}: golden text {text.about!r} cannot be read: {error}"
+                raise AssertionError(told(what, look=look)) from error
 
     def written(self, program: Program, robot: Robot) -> Sources:
         """The program as texts; that they are refused when they are read again is a failure."""
@@ -268,6 +273,18 @@ class Subject:
             for file, data in sources.items():
                 (Path(folder) / file).write_bytes(data)
             return self.vendor.read_file(Path(folder) / main, robot=robot)
+
+    def read_written(self, sources: Sources, robot: Robot) -> Program:
+        """What the writer has written; that it cannot be read is a failure."""
+        try:
+            return self.read_back(sources, robot)
+        except FlybyError as error:
+            raise AssertionError(
+                told(
+                    f"{self.name}: what is written cannot be read: {error}",
+                    written=text_of(sources),
+                )
+            ) from error
 
 
 def said(program: Program, vendor: Vendor, robot: Robot, again: Program) -> Program:

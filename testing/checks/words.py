@@ -66,7 +66,7 @@ class WordsChecks(Subject):
         for word in self._said_by_moves(self.dialect):
             program = self._around(word.move)
             sources = self.written(program, self._robot_of_words)
-            again = self.read_back(sources, self._robot_of_words)
+            again = self.read_written(sources, self._robot_of_words)
             assert len(again.moves) == len(program.moves), told(
                 f"{self.name}: {word.name} comes back as {len(again.moves)} moves",
                 written=text_of(sources),
@@ -93,7 +93,7 @@ class WordsChecks(Subject):
                     continue
                 program = self._around(replace(move, events=(event,)))
                 sources = self.written(program, self._robot_of_words)
-                again = self.read_back(sources, self._robot_of_words)
+                again = self.read_written(sources, self._robot_of_words)
                 read = [e for m in again.moves for e in m.events]
                 assert alike([event], read, 1e-6) and again.moves[1].events, told(
                     f"{self.name}: an event on the way does not come back",
@@ -126,7 +126,7 @@ class WordsChecks(Subject):
             )
             program = self._around(self._plain(MoveL), Opaque(text))
             sources = self.written(program, self._robot_of_words)
-            again = self.read_back(sources, self._robot_of_words)
+            again = self.read_written(sources, self._robot_of_words)
             kept = [s.text for s in again.statements if isinstance(s, Opaque)]
             assert [signals.read(one) for one in kept] == [action], told(
                 f"{self.name}: a kept statement on signals does not come back",
@@ -142,11 +142,15 @@ class WordsChecks(Subject):
         sources = self.written(program, self._robot_of_words)
         main = next(iter(sources))
         lines = sources[main].splitlines(keepends=True)
-        motion = next(s.statement for s in self.read_back(sources).moves if s.statement)
+        motion = next(
+            s.statement
+            for s in self.read_written(sources, self._robot_of_words).moves
+            if s.statement
+        )
         words = f"{spoken.comment}{lines[motion.line - 1].strip()}\n"
         lines.insert(motion.line - 1, words)
-        again = self.read_back({**sources, main: "".join(lines)}, self._robot_of_words)
-        self.check_same(self.read_back(sources, self._robot_of_words), again, sources)
+        again = self.read_written({**sources, main: "".join(lines)}, self._robot_of_words)
+        self.check_same(self.read_written(sources, self._robot_of_words), again, sources)
 
     def test_golden_texts_stay_within_the_dialect(self) -> None:
         """What a text says, the dialect has words for: translations would not use them."""
