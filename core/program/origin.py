@@ -33,6 +33,8 @@ class Origin:
             derived or predefined.
         data: of numbers that come from several literals, name of the datum that each belongs to;
             empty where ``datum`` is the only one, or all stand in one literal.
+        base: of a computed target, the name, folded, of a target that it is computed from, where
+            somebody has looked for that.
     """
 
     ownership: Ownership
@@ -40,6 +42,7 @@ class Origin:
     datum: str | None = None
     numbers: tuple[Span | None, ...] = ()
     data: tuple[str | None, ...] = ()
+    base: str | None = None
 
     def datum_of(self, index: int) -> str | None:
         """Name of the datum that a number belongs to; None for a literal where it is used."""

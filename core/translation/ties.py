@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ..program.folding import alike, variants
-from ..program.move import MoveC, MoveJ, MoveL, Opaque, Statement, Wait
+from ..program.folding import Folding
+from ..program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..program.program import Program
 from ..program.section import Section
+from ..program.target import PoseTarget
 from ..program.zone import FINE, Radius, Zone
 
 
@@ -22,12 +23,9 @@ class Ties:
 
     def __init__(self, statements: Sequence[Statement], sections: Sequence[Section]) -> None:
         self._first = list(range(len(statements)))
-        for section in sections:
-            if section.passes and alike(statements, section):
-                self._tie(section.bodies)
-        for classes in variants(statements, sections).values():
-            for calls in classes:
-                self._tie([(call.begin, call.end) for call in calls])
+        for pair in Folding(statements, sections).ties:
+            one, two = map(self.of, pair)
+            self._first[max(one, two)] = min(one, two)
         self._moves = [i for i, s in enumerate(statements) if isinstance(s, MoveJ | MoveL | MoveC)]
 
     def of(self, statement: int) -> int:
@@ -64,12 +62,37 @@ class Ties:
                     moves[i] = replace(moves[i], zone=least)
         return program.with_moves(tuple(moves))
 
-    def _tie(self, bodies: Sequence[tuple[int, int]]) -> None:
-        begin, end = bodies[0]
-        for other, _ in bodies[1:]:
-            for k in range(end - begin):
-                one, two = self.of(begin + k), self.of(other + k)
-                self._first[max(one, two)] = min(one, two)
+
+def groups_of_hints(
+    statements: Sequence[Statement], sections: Sequence[Section]
+) -> list[list[int]]:
+    """Moves that would be one line but for hints of where to look for their solutions."""
+    bare = [_without_hint(s) if isinstance(s, MoveJ | MoveL | MoveC) else s for s in statements]
+    if bare == list(statements):
+        return []
+    return Ties(bare, sections).moves()
+
+
+def with_first_hints(program: Program, groups: Sequence[Sequence[int]]) -> Program:
+    """The program in which the moves of a group have the hint of the first."""
+    moves = list(program.moves)
+    for group in groups:
+        first = moves[group[0]].target
+        for index in group[1:]:
+            target = moves[index].target
+            if isinstance(target, PoseTarget) and isinstance(first, PoseTarget):
+                one = replace(target, configuration=first.configuration)
+                moves[index] = replace(moves[index], target=one)
+    return program.with_moves(tuple(moves))
+
+
+def _without_hint(move: Move) -> Move:
+    target = move.target
+    if not isinstance(target, PoseTarget) or target.configuration is None:
+        return move
+    if not target.configuration.hint:
+        return move
+    return replace(move, target=replace(target, configuration=None))
 
 
 def _before_stops(statements: Sequence[Statement]) -> Iterator[int]:

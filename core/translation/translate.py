@@ -9,13 +9,13 @@ import numpy as np
 
 from ..dialect import Dialect
 from ..display import counted, in_line
-from ..errors import Note
+from ..errors import MotionError, Note
 from ..motion.emulator.controller import Controller
 from ..motion.geometry.segments import make_segments
 from ..motion.model.rules import Overlap
 from ..motion.path.path import Path, Route
 from ..notebook import PictureCurve, page, picture, table
-from ..program.folding import alike, usable, variants, with_one_cycle
+from ..program.folding import Folding, usable, with_one_cycle
 from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Statement
 from ..program.program import Program
 from ..program.section import moved
@@ -25,6 +25,7 @@ from ..robot.model import Robot
 from ..source.write.options import StructureStyle
 from ..spatial.pose import IDENTITY, Pose
 from ..vendor import Vendor
+from .bases import with_bases
 from .corners import EmulatedCorner, corners_of, fit_zones
 from .emulation import EmulatedProgram, Party
 from .frames import Frames
@@ -36,7 +37,7 @@ from .pacing import Pacer
 from .rewording import Rewording
 from .signals import SignalMap
 from .targets import Placer
-from .ties import Ties
+from .ties import Ties, groups_of_hints, with_first_hints
 
 LOSSES = (("line", "left"), ("what could not be carried over", "left"))
 """Columns of a table of losses."""
@@ -47,6 +48,10 @@ _CUT_SMALL = 5e-5
 _TURN_TOLD = 1e-2
 """rad of turn beside a waypoint from which on the zone of reorientation matters."""
 _NO_FURTHER = "zones reach no further here"
+_HINTS_TRIED = 4
+"""Times that hints are shared by fewer lines, until the robot drives as it did."""
+_SOLUTION = 1e-6
+"""rad and m within which two solutions are one."""
 _RIGID = 1e-6
 """rad by which a tool that follows an arc rigidly may miss the orientation of its end."""
 _RIGID_TOLD = 1e-3
@@ -165,10 +170,12 @@ class _Translator:
         placed, start = placer.place(program, route, losses)
         new_route = self.target.route(placed, start)
         said = self._with_said_arcs(without_loads(placed, self.dialect, losses), new_route, losses)
-        ties = self._ties = Ties(said.statements, usable(said))
-        self._shared = {move for moves in ties.moves() for move in moves}
         if said is not placed:
             new_route = self.target.route(said, start)
+        said = with_bases(said, self.source_program)
+        said, new_route = self._with_one_hint(said, new_route, start)
+        ties = self._ties = Ties(said.statements, usable(said))
+        self._shared = {move for moves in ties.moves() for move in moves}
         wanted = self._wanted(new_route, path)
         made, new_path = self._zoned(said, new_route, wanted, start)
         if self.dialect is not None:
@@ -266,6 +273,31 @@ class _Translator:
                 moves[i] = replace(move, orientation=ArcOrientation.FIXED_FRAME)
         return program.with_moves(tuple(moves))
 
+    # ----------------------------------------------------------- lines that drive several moves
+
+    def _with_one_hint(
+        self, program: Program, route: Route, start: JointTarget
+    ) -> tuple[Program, Route]:
+        """The program in which the moves of one line begin the search for their solution at one
+        place, as a line has one, as far as they find the same solutions there; and its route."""
+        groups = groups_of_hints(program.statements, usable(program))
+        for _ in range(_HINTS_TRIED):
+            if not groups:
+                break
+            tried = with_first_hints(program, groups)
+            try:
+                again = self.target.route(tried, start)
+            except MotionError as error:
+                wrong = set() if error.move is None else {error.move}
+            else:
+                apart = np.abs(again.ends.q[:, 1] - route.ends.q[:, 1]).max(axis=1)
+                wrong = {route.moves[k] for k in np.flatnonzero(apart > _SOLUTION)}
+                if again.moves == route.moves and not wrong:
+                    return tried, again
+            left = [moves for moves in groups if wrong.isdisjoint(moves)]
+            groups = left if len(left) < len(groups) else []
+        return program, route
+
     # --------------------------------------------------------------------------- zones
 
     def _zoned(
@@ -348,12 +380,13 @@ class _Translator:
     def _tell_structure(self, program: Program) -> None:
         """Loops and routines that cannot be written as such."""
         statements, sections = program.statements, usable(program)
+        folding = Folding(statements, sections)
         for section in sections:
             moves = any(
                 isinstance(s, MoveJ | MoveL | MoveC)
                 for s in statements[section.begin : section.end]
             )
-            if moves and section.passes and not alike(statements, section):
+            if moves and section in folding.written_out:
                 self.losses.statement(
                     section.span,
                     f"{section.name}: its passes differ, and are written one after the other",
@@ -362,12 +395,11 @@ class _Translator:
                 self.losses.statement(
                     section.span, f"{section.name}: becomes a loop without an end"
                 )
-        for classes in variants(statements, sections).values():
-            if len(classes) > 1:
-                name = classes[0][0].name
-                names = (name, *(f"{name}_{k + 2}" for k in range(len(classes) - 1)))
-                self.losses.statement(
-                    classes[1][0].span,
-                    f"{name} does something else here than at first: it is written as "
-                    f"{', '.join(names[:-1])} and {names[-1]}",
-                )
+        for calls in folding.variants():
+            name = calls[0].name
+            names = (name, *(f"{name}_{k + 2}" for k in range(len(calls) - 1)))
+            self.losses.statement(
+                calls[1].span,
+                f"{name} does something else here than at first: it is written as "
+                f"{', '.join(names[:-1])} and {names[-1]}",
+            )

@@ -142,6 +142,7 @@ _PATH = MoveWords(
     (Radius, Angle, C_VEL),
     frozenset({"tcp", "reorientation", "tcp_acceleration", "reorientation_acceleration"}),
     frozenset({"tcp"}),
+    configurations=False,  # LIN and CIRC keep the Status, whatever S and T say
 )
 
 

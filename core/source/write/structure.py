@@ -9,12 +9,32 @@ from typing import Any, Generic, TypeVar
 
 from ...program.folding import Called, Node, Repeat, folded
 from ...program.move import Move, MoveC, MoveJ, MoveL, Statement
+from ...program.places import Argument, Destination
 from ...program.program import Program
+from ...program.target import JointTarget, Target
+from ...program.tool import WorkObject
 from ..text.names import Names
 
 Line = TypeVar("Line")
 COUNTER = "flyby_{}"
 """What counters are called."""
+ARGUMENT = "flyby_p{}"
+"""What targets are called that a routine is given."""
+
+
+def argument(number: int) -> str:
+    """The name of an argument, by its number from 0."""
+    return ARGUMENT.format(number + 1)
+
+
+def summed(terms: Iterable[tuple[float, str]], number: Callable[[float], str]) -> str:
+    """Stretches as a sum, see `Structure.stretches`.
+
+    Args:
+        number: writes one.
+    """
+    parts = (number(by) + (f"*{passes}" if passes else "") for by, passes in terms)
+    return "+".join(parts).replace("+-", "-") or "0"
 
 
 class Structure(ABC, Generic[Line]):
@@ -30,6 +50,7 @@ class Structure(ABC, Generic[Line]):
         held: what is known to hold, an object that is copied, and changed by what is written.
         routines: the lines of each by its name, in the order of their first call.
         counters: of the loops in each routine, by its name; the program's own is called "".
+        arguments: of each routine, whether they are joint values.
     """
 
     fallback = "Routine"
@@ -40,6 +61,7 @@ class Structure(ABC, Generic[Line]):
         self.held = held
         self.routines: dict[str, list[Line]] = {}
         self.counters: dict[str, list[str]] = {"": []}
+        self.arguments: dict[str, list[bool]] = {}
         self._inside = ""
         self._known: dict[tuple[str, int], tuple[str, Any]] = {}
 
@@ -56,24 +78,55 @@ class Structure(ABC, Generic[Line]):
         """A loop without an end."""
 
     @abstractmethod
-    def call(self, name: str) -> Line:
-        """A call of a routine without arguments."""
+    def call(
+        self, name: str, arguments: Sequence[Destination], frames: Sequence[WorkObject]
+    ) -> list[Line]:
+        """A call of a routine.
+
+        Args:
+            arguments: where it is sent.
+            frames: the work object in which each is seen.
+        """
+
+    def stretches(self, place: Destination, first: int) -> list[list[tuple[float, str]]]:
+        """How far a place is from its base, along x, y and z: stretches in m, each with what it is
+        multiplied by, empty for nothing.
+
+        Args:
+            first: the number of a loop's first pass.
+        """
+        counters = self.counters[self._inside]
+        found: list[list[tuple[float, str]]] = [[], [], []]
+        for axis, terms in enumerate(found):
+            if place.offset[axis]:
+                terms.append((place.offset[axis], ""))
+            for level, by in place.steps:
+                counter = counters[level]
+                passes = counter if first == 0 else f"({counter}-{first})"
+                if by[axis]:
+                    terms.append((by[axis], passes))
+        return found
 
     @property
     def taken(self) -> list[str]:
         """The names that it has given, which data may not have."""
-        return [*self.routines, *(name for names in self.counters.values() for name in names)]
+        counters = (name for names in self.counters.values() for name in names)
+        most = max(map(len, self.arguments.values()), default=0)
+        return [*self.routines, *counters, *map(argument, range(most))]
 
     def passed(self, move: Move, index: int) -> None:
         """A move that is not written again is driven."""
 
     def lines(
-        self, program: Program, said: Callable[[Statement, int], Iterable[Line]]
+        self,
+        program: Program,
+        said: Callable[[Statement, int, tuple[Destination, ...]], Iterable[Line]],
     ) -> list[Line]:
         """The lines of the program itself.
 
         Args:
-            said: the lines of a statement and the index that it has, or would have, as a move.
+            said: the lines of a statement, of the index that it has, or would have, as a move, and
+                of where it goes to and through.
         """
         self._statements: Sequence[Statement] = program.statements
         self._moves = [0]
@@ -87,39 +140,45 @@ class Structure(ABC, Generic[Line]):
             if isinstance(node, Repeat):
                 yield from self._repeat(node)
             elif isinstance(node, Called):
-                yield self._called(node)
+                yield from self._called(node)
             else:
-                yield from self._said(self._statements[node], self._moves[node])
+                index = node.index
+                yield from self._said(self._statements[index], self._moves[index], node.places)
 
     def _repeat(self, node: Repeat) -> list[Line]:
         self.held = self.nothing_known()
+        counters = self.counters[self._inside]
+        while node.count is not None and len(counters) <= node.level:
+            counters.append(COUNTER.format(len(counters) + 1))
         body = list(self._of(node.body))
         self._pass(node.rest)
         if node.count is None:
             return self.endless(body)
-        counters = self.counters[self._inside]
-        while len(counters) <= node.level:
-            counters.append(COUNTER.format(len(counters) + 1))
         return self.counted(body, node.count, counters[node.level])
 
-    def _called(self, node: Called) -> Line:
+    def _called(self, node: Called) -> list[Line]:
         key = node.name.casefold(), node.number
         if key in self._known:
             self._pass(node.whole)
             name, held = self._known[key]
             self.held = copy.deepcopy(held)
-            return self.call(name)
+            return self.call(name, node.arguments, node.frames)
         name = self.names.claim(node.name, self.fallback)
         self.routines[name], self.counters[name] = [], []  # its place is that of its first call
+        self.arguments[name] = [_joints(place.base) for place in node.arguments]
         outer, self._inside = self._inside, name
         self.held = self.nothing_known()
         self.routines[name] += self._of(node.body)
         self._inside = outer
         self._known[key] = name, copy.deepcopy(self.held)
-        return self.call(name)
+        return self.call(name, node.arguments, node.frames)
 
     def _pass(self, indices: range) -> None:
         for index in indices:
             statement = self._statements[index]
             if isinstance(statement, MoveJ | MoveL | MoveC):
                 self.passed(statement, self._moves[index])
+
+
+def _joints(base: Target | Argument) -> bool:
+    return base.joints if isinstance(base, Argument) else isinstance(base, JointTarget)

@@ -282,7 +282,7 @@ def test_the_label_is_the_new_vendors(pair) -> None:
         type(joint.target.configuration).__module__
         == f"flyby.vendors.{vendor}.motion.configuration"
     )
-    assert (line.target.configuration is None) == (vendor == "ur")
+    assert (line.target.configuration is None) == (vendor != "abb")
 
 
 def test_what_is_out_of_reach_is_an_error_with_move_and_line(between) -> None:

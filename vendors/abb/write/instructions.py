@@ -5,6 +5,7 @@ Section names are those of the "RAPID Reference Manual", instructions.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ....core.errors import InputError
@@ -24,11 +25,12 @@ LEAST_SHARES = (0.2, 0.1)
 """``AccSet`` takes a smaller acceleration or ramp as this much."""
 
 
-def move_line(move: Move, said: Said, operands: Operands) -> Line:
+def move_line(move: Move, said: Said, operands: Operands, places: Sequence[Line] = ()) -> Line:
     """The move instruction.
 
     Args:
         said: the instruction's name, and what its events add to it.
+        places: where it goes to and through, where that is not the move's own target.
 
     Raises:
         InputError: RAPID cannot say it.
@@ -38,7 +40,9 @@ def move_line(move: Move, said: Said, operands: Operands) -> Line:
             f"one of tool {move.tool.name} and work object {move.work_object.name} is held by the "
             "robot and the other stands still; here both are alike"
         )
-    if isinstance(move.target, JointTarget):
+    if places:
+        points = tuple(part for place in reversed(places) for part in (",", *place))[1:]
+    elif isinstance(move.target, JointTarget):
         points = _joint_point(move, move.target, operands)
     else:
         points = _points(move, move.target, operands)

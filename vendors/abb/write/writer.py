@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from ....core.program.move import Move, MoveC, Opaque, Wait
+from ....core.program.places import Destination
 from ....core.program.program import Program
 from ....core.source.text.files import lines_of
 from ....core.source.text.names import Names
@@ -56,7 +57,7 @@ def write(program: Program, options: RapidOptions, around: TextAround = TextArou
     operands = Operands(options)
     module = module_name(program)
     taken = [module, ENTRY, *around.names]
-    structure = Structure(*taken)
+    structure = Structure(operands, *taken)
     lines = _body(program, operands, options, structure)
     names = operands.declarations.names(Names(NAME_RULES, [*taken, *structure.taken]))
 
@@ -67,7 +68,7 @@ def write(program: Program, options: RapidOptions, around: TextAround = TextArou
     routines = [
         line
         for name, body in structure.routines.items()
-        for line in ("", f"PROC {name}()", *_indented(texts(body)), "ENDPROC")
+        for line in ("", structure.head(name), *_indented(texts(body)), "ENDPROC")
     ]
     return "\n".join(
         [
@@ -108,12 +109,14 @@ def _body(
         """``WaitTime Time`` in s (WaitTime)."""
         return [(f"WaitTime {number(statement.duration)};",)]
 
-    def move(statement: Move, index: int) -> list[Line]:
+    def move(statement: Move, index: int, places: tuple[Destination, ...]) -> list[Line]:
         if isinstance(statement, MoveC):
             check_arc(moves[index - 1] if index else None, statement)
         said = events.of(statement)
         changes = structure.held.changes(statement, operands)
-        return [*changes, *said.before, move_line(statement, said, operands)]
+        moved = not all(place.fixed for place in places)
+        points = [structure.placed(place) for place in places] if moved else []
+        return [*changes, *said.before, move_line(statement, said, operands, points)]
 
     kept = structure if options.structure is StructureStyle.KEEP else None
     return lines_of_statements(program, wait, lambda o: _opaque(o, options.opaque), move, kept)

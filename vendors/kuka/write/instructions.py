@@ -6,7 +6,7 @@ KRL keeps most of what a move needs in system variables that hold until they are
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ....core.errors import InputError, MotionError
@@ -42,18 +42,23 @@ class Phrases:
     data: DataList
     stated: Mapping[tuple[str | None, str], str]
 
-    def motion(self, move: Move) -> Line:
+    def motion(self, move: Move, places: Sequence[str | NewDatum] = ()) -> Line:
         """``PTP``, ``LIN`` or ``CIRC`` with its approximation.
+
+        Args:
+            places: where it goes to and through, where that is not the move's own target.
 
         Raises:
             InputError: KRL cannot say it.
         """
         zone = approximation(move)
-        if isinstance(move, MoveC):
-            return ("CIRC ", self._passed(move.via), ",", self._position(move), zone)
+        if isinstance(move, MoveJ):
+            return ("PTP ", places[0] if places else self.point(move.target), zone)
+        via = self.passed(move.via) if isinstance(move, MoveC) else ""
+        goal = places[0] if places else self._position(move)
         if isinstance(move, MoveL):
-            return ("LIN ", self._position(move), zone)
-        return ("PTP ", self._point(move.target), zone)
+            return ("LIN ", goal, zone)
+        return ("CIRC ", places[1] if places else via, ",", goal, zone)
 
     def _position(self, move: Move) -> NewDatum:
         if isinstance(move.target, JointTarget):
@@ -61,14 +66,15 @@ class Phrases:
                 "KRL's LIN and CIRC take a position, not axis values: give the move the pose, or "
                 "make it a joint move"
             )
-        return self._passed(move.target)
+        return self.passed(move.target)
 
-    def _passed(self, target: PoseTarget) -> NewDatum:
+    def passed(self, target: PoseTarget) -> NewDatum:
         """A position whose S and T do not count."""
         text = e6pos(replace(target, configuration=None), self.robot)
         return self.data.add("E6POS", self.stated.get(_key(target, text), text), target.name)
 
-    def _point(self, target: Target) -> NewDatum:
+    def point(self, target: Target) -> NewDatum:
+        """A position with its S and T, or axis values."""
         if isinstance(target, PoseTarget):
             return self.data.add("E6POS", e6pos(target, self.robot), target.name)
         return self.data.add("E6AXIS", e6axis(target, self.robot), target.name)

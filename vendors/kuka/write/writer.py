@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from ....core.errors import InputError
 from ....core.program.event import Event
 from ....core.program.move import Move, MoveJ
+from ....core.program.places import Destination
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
@@ -93,7 +94,7 @@ def compose(
     module = module_name(program)
     data = DataList()
     phrases = Phrases(robot, data, stated_positions(program, robot))
-    structure = Structure(module)
+    structure = Structure(phrases, module)
     lines = _Body(program, phrases, options, structure).lines()
     names = data.names(Names(NAME_RULES, [module, *structure.taken]))
 
@@ -106,7 +107,7 @@ def compose(
     further = [
         line
         for name, body in structure.routines.items()
-        for line in ("", f"DEF {name}( )", *structure.declared(name), *texts(body), "END")
+        for line in ("", *structure.head(name), *texts(body), "END")
     ]
     return {
         f"{module}.src": source_text(f"{module}( )", whole, further),
@@ -156,7 +157,7 @@ class _Body:
         keep = self._options.opaque is OpaqueStyle.KEEP
         return [(line if keep else f"; {line}",) for line in lines_of(text)]
 
-    def _move(self, move: Move, index: int) -> list[Line]:
+    def _move(self, move: Move, index: int, places: tuple[Destination, ...]) -> list[Line]:
         check_external(move.speed, self._phrases.robot)
         move = self._with_status(move, index)
         lines: list[Line] = []
@@ -166,7 +167,23 @@ class _Body:
                 lines.append(line)
         for event in move.events:
             lines += self._event(event, move)
-        return [*lines, self._phrases.motion(move)]
+        ahead, points = self._points(move, places)
+        return [*ahead, *lines, self._phrases.motion(move, points)]
+
+    def _points(
+        self, move: Move, places: tuple[Destination, ...]
+    ) -> tuple[list[Line], list[str | NewDatum]]:
+        """Where loops and routines move a move on to, and the lines that put that together."""
+        if all(place.fixed for place in places):
+            return [], []
+        ahead: list[Line] = []
+        points: list[str | NewDatum] = []
+        for number_, place in enumerate(places):
+            passed = number_ > 0 or not isinstance(move, MoveJ)
+            lines, point = self._structure.placed(place, number_, passed)
+            ahead += lines
+            points.append(point)
+        return ahead, points
 
     def _event(self, event: Event, move: Move) -> list[Line]:
         if self._options.opaque is OpaqueStyle.COMMENT:

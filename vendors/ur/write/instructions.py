@@ -7,17 +7,29 @@ and internals.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from ....core.errors import InputError
 from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.places import Destination, Vector, rounded
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget
-from ....core.program.tool import WORLD
+from ....core.program.tool import WORLD, WorkObject
 from ....core.robot.model import Robot
 from .declarations import Declarations, Line
 from .formatting import comment, listing, number, pose_literal
 from .joint_speeds import with_leading_speed
-from .operands import Operands, blend, gives_shares, qnear, shares, speed_arguments
+from .operands import (
+    Operands,
+    blend,
+    frame_in_base,
+    gives_shares,
+    qnear,
+    shares,
+    speed_arguments,
+)
 from .options import ShareStyle
 from .payload import NO_PAYLOAD, payload
 from .positions import Standpoint
@@ -32,20 +44,40 @@ class Phrases:
         self._robot = robot
         self._shares = shares
         self._standpoint = Standpoint(robot, program)
-        self._operands = Operands(robot)
+        self.operands = Operands(robot)
 
     @property
     def declarations(self) -> Declarations:
         """The data that the moves name."""
-        return self._operands.declarations
+        return self.operands.declarations
 
-    def move(self, move: Move) -> Line:
+    def in_base(self, place: Destination, frame: WorkObject) -> Destination:
+        """A place whose stretches are along the axes of the robot's base.
+
+        Args:
+            frame: the work object along whose axes they are.
+        """
+        found = frame_in_base(frame, self._robot.base)
+        if found is None:
+            return place
+
+        def turned(stretch: Vector) -> Vector:
+            x, y, z = found.matrix()[:3, :3] @ np.array(stretch)
+            return rounded((float(x), float(y), float(z)))
+
+        steps = tuple((level, turned(by)) for level, by in place.steps)
+        return replace(place, offset=turned(place.offset), steps=steps)
+
+    def move(self, move: Move, places: Sequence[Line] = ()) -> Line:
         """The call that drives the next move.
+
+        Args:
+            places: where it goes to and through, where that is not the move's own target.
 
         Raises:
             InputError: URScript cannot say it.
         """
-        line = self._line(move)
+        line = self._line(move, places)
         self._standpoint.moved(move)
         return line
 
@@ -53,18 +85,19 @@ class Phrases:
         """A move is driven by a line that is written already."""
         self._standpoint.moved(move)
 
-    def _line(self, move: Move) -> Line:
+    def _line(self, move: Move, places: Sequence[Line]) -> Line:
         if isinstance(move, MoveC):
-            return self._arc(move)
+            return self._arc(move, places)
+        goal = _goal(move, self.operands, places)
         if self._shares is ShareStyle.OPTIMOVE and gives_shares(move.speed):
             function = "optimovej" if isinstance(move, MoveJ) else "optimovel"
-            return _call(function, _goal(move, self._operands), shares(move), move)
+            return _call(function, goal, shares(move), move)
         if isinstance(move, MoveJ):
             made = with_leading_speed(move, self._robot, self._standpoint)
-            return _call("movej", _goal(move, self._operands), speed_arguments(made), move)
-        return _call("movel", _goal(move, self._operands), speed_arguments(move), move)
+            return _call("movej", goal, speed_arguments(made), move)
+        return _call("movel", goal, speed_arguments(move), move)
 
-    def _arc(self, move: MoveC) -> Line:
+    def _arc(self, move: MoveC, places: Sequence[Line]) -> Line:
         """``movec(pose_via, pose_to, a, v, r, mode)``; mode 0 turns the tool from pose to pose.
 
         In mode 1 its orientation is fixed relative to the arc's tangent.
@@ -73,13 +106,16 @@ class Phrases:
             raise InputError("URScript's movec takes no time: give the move a TCP speed")
         if not isinstance(move.target, PoseTarget):
             raise InputError("an arc ends at a pose, not at joint values: give it the pose")
-        via = self._operands.pose(move.via, move.work_object)
-        end = self._operands.pose(move.target, move.work_object)
+        if places:
+            end, via = places
+        else:
+            via = (self.operands.pose(move.via, move.work_object),)
+            end = (self.operands.pose(move.target, move.work_object),)
         speed = speed_arguments(move)
         if move.orientation is ArcOrientation.FIXED_FRAME:
-            return _call("movec", (via, ", ", end), speed, move)
+            return _call("movec", (*via, ", ", *end), speed, move)
         self._standpoint.check_following(move)
-        return _call("movec", (via, ", ", end), speed, move, ", mode=1")
+        return _call("movec", (*via, ", ", *end), speed, move, ", mode=1")
 
 
 def _call(function: str, goal: Line, speed: str, move: Move, more: str = "") -> Line:
@@ -88,17 +124,17 @@ def _call(function: str, goal: Line, speed: str, move: Move, more: str = "") -> 
     return (f"{function}(", *goal, ", ", speed, f", {radius}" if radius else "", f"{more})")
 
 
-def _goal(move: MoveJ | MoveL, operands: Operands) -> Line:
+def _goal(move: MoveJ | MoveL, operands: Operands, places: Sequence[Line]) -> Line:
     """Joint values, or a pose; with ``qnear`` through ``get_inverse_kin(x, qnear)``.
 
     Moves of the TCP keep the solution that they begin with: it needs no name.
     """
     if isinstance(move.target, JointTarget):
-        return (operands.joints(move.target),)
-    pose = operands.pose(move.target, move.work_object)
+        return places[0] if places else (operands.joints(move.target),)
+    pose = places[0] if places else (operands.pose(move.target, move.work_object),)
     if isinstance(move, MoveL) or move.target.configuration is None:
-        return (pose,)
-    return ("get_inverse_kin(", pose, ", ", qnear(move.target.configuration), ")")
+        return pose
+    return ("get_inverse_kin(", *pose, ", ", qnear(move.target.configuration), ")")
 
 
 class WrittenSettings:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ....core.errors import InputError
 from ....core.language import Sources
 from ....core.program.move import Move, Opaque, Wait
+from ....core.program.places import Destination
 from ....core.program.program import Program
 from ....core.robot.model import Robot
 from ....core.source.text.files import lines_of
@@ -84,7 +85,7 @@ def body(program: Program, robot: Robot, options: ScriptOptions, *taken: str) ->
     functions = [
         line
         for called, body in structure.routines.items()
-        for line in (f"def {called}():", *indented(texts(body)), "end")
+        for line in (structure.head(called), *indented(texts(body)), "end")
     ]
     declared = phrases.declarations.lines(given)
     return Script(name, [*declared, *functions], texts(lines))
@@ -98,9 +99,12 @@ def _lines(
     def wait(statement: Wait) -> list[Line]:
         return [(f"sleep({number(statement.duration)})",)]
 
-    def move(statement: Move, index: int) -> list[Line]:
+    def move(statement: Move, index: int, places: tuple[Destination, ...]) -> list[Line]:
         before = [*_events(statement, style), *structure.held.changes(statement)]
-        return [*((line,) for line in before), phrases.move(statement)]
+        moved = not all(place.fixed for place in places)
+        frame = statement.work_object
+        points = [structure.placed(place, frame) for place in places] if moved else []
+        return [*((line,) for line in before), phrases.move(statement, points)]
 
     kept = structure if options.structure is StructureStyle.KEEP else None
     return lines_of_statements(program, wait, lambda o: _opaque(o, style), move, kept)
