@@ -64,6 +64,7 @@ class Sections:
 
     def _end(self, index: int, passes: tuple[int, ...]) -> None:
         end = len(self.statements)
-        while len(passes) > 1 and passes[-1] == end:  # a pass that left nothing
-            passes = passes[:-1]
-        self._found[index] = replace(self._found[index], end=end, passes=passes)
+        count = len(passes)
+        while count > 1 and passes[count - 1] == end:  # a pass that left nothing
+            count -= 1
+        self._found[index] = replace(self._found[index], end=end, passes=passes[:count])

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import ClassVar, Generic, Self, TypeVar
 
 from ...errors import SourceError, Span
-from .lexer import END, END_OF_LINE, NAME, Source, Tokens
+from .lexer import END, END_OF_LINE, NAME, STRAY, Source, Tokens
 
 Item = TypeVar("Item")
 
@@ -119,11 +119,43 @@ class TokenCursor(Generic[Source]):
         """The error that ``wanted`` should stand where the next token is."""
         if self.kind == END:
             message = f"the file ends where {wanted} should follow: it is cut off or incomplete"
+        elif self.kind == STRAY:
+            damage = self.source.damage
+            message = "" if damage is None else damage.characters[self.start]
         elif self.kind == END_OF_LINE:
             message = f"the line ends where {wanted} should stand"
         else:
             message = f"{self._found()} stands where {wanted} should"
         return self.source.error(message, self.start, self.ends[self.index])
+
+    def torn(self, wanted: str) -> SourceError:
+        """The error that a block is not closed, behind which nothing can be read."""
+        if self.source.damage is not None:
+            self.source.damage.torn = True
+        return self.unexpected(wanted)
+
+    def step_over(self, error: SourceError, then: str = "it is stepped over") -> None:
+        """Go on behind a statement that is none.
+
+        Args:
+            error: what is wrong.
+            then: what is done about it.
+
+        Raises:
+            SourceError: that cannot be done, or may not in this text.
+        """
+        if self.source.damage is None:
+            raise error
+        self.source.damage.step_over(error, then)
+
+    def begins_line(self) -> bool:
+        """Whether the next token is the first of its line, which the last token does not share."""
+        if self.index == 0:
+            return True
+        if self.kinds[self.index - 1] == END_OF_LINE or self.kind == END:
+            return True
+        between = self._text[self.ends[self.index - 1] - self._base : self.start - self._base]
+        return "\n" in between or "\r" in between
 
     @contextmanager
     def nested(self) -> Iterator[None]:

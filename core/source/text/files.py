@@ -12,6 +12,7 @@ from typing import Self
 
 from ...errors import InputError, Note, ParseError, SourceError, Span
 from ...files.reading import read_bytes
+from .damage import Damage
 
 UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 LARGEST_FILE = 20_000_000
@@ -120,11 +121,15 @@ def decode(source: str | bytes, file: str) -> tuple[str, str]:
 class SourceText:
     """A text that knows the line and column of every offset, as editors count them: ends of line
     are LF, CR LF or CR.
+
+    Attributes:
+        damage: what is wrong in it and stepped over; None where an error ends its reading.
     """
 
-    def __init__(self, text: str, file: str) -> None:
+    def __init__(self, text: str, file: str, damage: Damage | None = None) -> None:
         self.text = text
         self.file = file
+        self.damage = damage
         self._lines = _line_starts(text)
         self._row = 0
 

@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 from ...errors import SourceError, Span
+from .damage import Damage
 from .files import unbroken
 
 END, END_OF_LINE, NAME = "end of file", "end of line", "name"
+STRAY = "character"
+"""What no token begins with, in a damaged text that is read all the same."""
 """Kinds of token that languages have in common."""
 UNCLOSED = "this string has no closing quote on its line"
 
@@ -23,6 +26,10 @@ class Places(Protocol):
 
     def error(self, message: str, start: int, end: int | None = None) -> SourceError:
         """An error at ``start``, to be raised."""
+
+    @property
+    def damage(self) -> Damage | None:
+        """What is wrong in it and stepped over; None where an error ends its reading."""
 
 
 Source = TypeVar("Source", bound=Places)
@@ -100,7 +107,14 @@ class Lexicon:
             if found is None:
                 blank = self.blank.match(seen, position)
                 at = position if blank is None else blank.end()
-                raise source.error(self.stray(seen, at), at + base)
+                if source.damage is None:
+                    raise source.error(self.stray(seen, at), at + base)
+                source.damage.characters[at + base] = self.stray(seen, at)
+                position = _behind_stray(seen, at)
+                kinds.append(STRAY)
+                starts.append(at + base)
+                ends.append(position + base)
+                continue
             kind = found.lastgroup or ""
             start, position = found.span(kind)
             if kind == "symbol":
@@ -120,6 +134,18 @@ class Lexicon:
             ends.append(position + base)
             if kind == END:
                 return Tokens(source, text, base, kinds, starts, ends)
+
+
+def _behind_stray(text: str, at: int) -> int:
+    """Where a text goes on behind what no token begins with: of a string that is not closed, at
+    the end of its line."""
+    if text[at] not in "\"'":
+        return at + 1
+    rest = _REST.match(text, at)
+    return at + 1 if rest is None else rest.end()
+
+
+_REST = re.compile(r"[^\r\n]*")
 
 
 def words(text: str) -> frozenset[str]:

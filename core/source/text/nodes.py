@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from ...errors import Span
+from ...errors import SourceError, Span
 
 
 class Composed:
@@ -182,6 +182,24 @@ class Return(Statement):
     """The end of a routine, with or without a value."""
 
     value: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class Unread(Statement):
+    """What is no statement of the language, in a text that is read all the same.
+
+    Args:
+        message: why.
+        moves: whether it looks like a motion.
+    """
+
+    message: str
+    moves: bool
+
+    @property
+    def error(self) -> SourceError:
+        """Why it cannot be carried out."""
+        return SourceError(self.message, self.span)
 
 
 @dataclass(frozen=True, slots=True)

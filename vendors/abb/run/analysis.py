@@ -95,6 +95,7 @@ class RapidTree:
             return self._invoked(statement, home, functions, names, given)
         written = {statement.target.name} if isinstance(statement, tree.Assign) else NOTHING
         return Step(
+            moves=isinstance(statement, tree.Unread) and statement.moves,
             writes=given | written,
             made_of=names,
             calls=functions,

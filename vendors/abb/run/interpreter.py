@@ -42,6 +42,7 @@ from .flow import run_for, run_if, run_test, run_while
 from .instructions import INTERPRETED, MOVING, refusal
 from .kept import KEPT, REFUSED
 from .recovery import Frame, Retry, TryNext, raised, recover
+from .traps import connect
 
 
 class _Returned(Exception):
@@ -274,6 +275,10 @@ class Interpreter:
             self.flow.label(id(statement))
         elif isinstance(statement, tree.Keyword):
             self._keyword(statement, scope)
+        elif isinstance(statement, tree.Unread) and not (
+            statement.moves and self._open_move(statement.error, statement.span)
+        ):
+            self.out.keep(statement.span, "", "")
 
     def _keyword(self, statement: tree.Keyword, scope: Scope) -> None:
         if statement.word == "exit":
@@ -281,7 +286,7 @@ class Interpreter:
         if statement.word == "connect":
             trap = self.data.routine(statement.name, scope.home)
             if trap is not None:
-                self._connect(trap, statement.span)
+                connect(self, trap, statement.span)
             self.out.keep(statement.span, "CONNECT", KEPT["connect"].why)
             return
         if statement.word == "placeholder":
@@ -308,17 +313,6 @@ class Interpreter:
     def leave(self) -> NoReturn:
         """RETURN without a value."""
         raise _Returned(None)
-
-    def _connect(self, trap: tree.Routine, span: Span) -> None:
-        """What a trap routine writes is not known from now on."""
-        body = self.tree.body(trap)
-        self.evaluator.outputs.share(self.analysis.outputs_written(body))
-        for part, names in self.analysis.written_apart(body):
-            routine = self.tree.routine(part)
-            own = {d.name for d in routine.declarations} | {p.name for p in routine.parameters}
-            for name in sorted(names - own):
-                datum = tree.Name(span, name, name)
-                self.evaluator.share(datum, f"TRAP {trap.text}", self.data.scope_of(routine))
 
     # ------------------------------------------------------------------------- calls
 

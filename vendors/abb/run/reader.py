@@ -34,6 +34,7 @@ from ....core.program.entry_point import ALL, entry_call
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
+from ....core.source.text.damage import Damage, nothing_driven
 from ....core.source.text.files import SourceFile, SourceText, decode
 from ..motion.targets import axis_kinds
 from ..syntax.parser import parse
@@ -126,10 +127,12 @@ def _program(
     options: ReadOptions,
     external_axes: Sequence[str] | None,
 ) -> Program:
-    parsed = {name: parse(SourceText(files[name].text, name)) for name in names}
+    mended = options.answers.goes_on
+    damages = {name: Damage() for name in names} if mended else {}
+    parsed = {name: parse(SourceText(files[name].text, name, damages.get(name))) for name in names}
     data = Globals(
         [module for modules in parsed.values() for module in modules],
-        Library(beside(files, main, names), loaded=options.beside is not None),
+        Library(beside(files, main, names), loaded=options.beside is not None, mended=mended),
     )
     own: list[Module] = [m for n in names if n == main or main not in parsed for m in parsed[n]]
     name, given = entry_call(options.entry)
@@ -146,10 +149,12 @@ def _program(
     if run.left_out is not None and not run.out.move_index:
         raise SourceError(f"no move can be driven: {run.left_out.message}", run.left_out.span)
     driven = run.out.move_index > 0
+    nothing_driven([*damages.values()], driven)
+    torn = (note for damage in damages.values() for note in damage.notes())
     return Program(
         run.statements(),
         data.module_of(entry).text,
-        notes=(*notes, *run.notes()),
+        notes=(*notes, *torn, *run.notes()),
         questions=run.course.questions(),
         entries=() if driven else entry_points(data, own),
         calls=tuple(run.out.calls),

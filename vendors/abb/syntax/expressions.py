@@ -163,6 +163,8 @@ def parse_arguments(cursor: Cursor, end: str) -> tuple[tree.Argument, ...]:
     """The arguments of a call up to the token ``end``: ``a, b:=c\\Option:=d, \\Switch``."""
     arguments: list[tree.Argument] = []
     while cursor.kind != end:
+        if arguments and end == ";" and cursor.ends_without_semicolon:
+            break
         if arguments and not cursor.accept(",") and cursor.kind != "\\":
             raise cursor.unexpected(f"',' or '{end}'")
         arguments.append(_argument(cursor))

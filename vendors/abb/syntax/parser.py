@@ -9,11 +9,15 @@ stand in the place, and not which of thirty terminals would be accepted there.
 
 from __future__ import annotations
 
+import re
+from pathlib import PurePath
+
+from ....core.errors import ParseError
 from ....core.source.text.files import SourceText
 from .cursor import Cursor
 from .expressions import parse_braces, parse_expression
 from .lexer import END, NAME, tokenize
-from .statements import parse_block
+from .statements import CLOSING, parse_block
 from .tree import (
     AliasDefinition,
     Declaration,
@@ -38,6 +42,13 @@ def parse(source: SourceText) -> tuple[Module, ...]:
     Raises:
         SourceError: the text is no RAPID, or is cut off.
     """
+    try:
+        return _parse(source)
+    except ParseError as error:
+        raise (error if source.damage is None else source.damage.first(error)) from None
+
+
+def _parse(source: SourceText) -> tuple[Module, ...]:
     cursor = Cursor(tokenize(source))
     if cursor.kind == END:
         raise source.error("the file holds no module", cursor.start)
@@ -49,6 +60,12 @@ def parse(source: SourceText) -> tuple[Module, ...]:
 
 def _module(cursor: Cursor) -> Module:
     start = cursor.start
+    damage = cursor.source.damage
+    if cursor.kind in _PARTS and damage is not None and start == cursor.starts[0]:
+        text = re.sub(r"\W", "_", PurePath(cursor.source.file.replace("\\", "/")).stem)
+        part = cursor.source.error("this is a part of a module, without MODULE and its name", start)
+        damage.step_over(part, f"it is read as MODULE {text}")
+        return _content(cursor, start, text, (), END)
     if cursor.kind in _PARTS:
         raise cursor.source.error(
             "this is a part of a module, which begins with MODULE and its name: put MODULE Part "
@@ -57,18 +74,30 @@ def _module(cursor: Cursor) -> Module:
         )
     cursor.expect("module", "at the beginning of the file")
     text = cursor.name("the module's name")
-    attributes = _attributes(cursor)
+    return _content(cursor, start, text, _attributes(cursor), "endmodule")
+
+
+def _content(
+    cursor: Cursor, start: int, text: str, attributes: tuple[str, ...], end: str
+) -> Module:
+    """What stands in a module.
+
+    Args:
+        start: where it begins.
+        text: its name.
+        end: kind of the token that ends it.
+    """
     types: list[RecordDefinition | AliasDefinition] = []
     declarations: list[Declaration] = []
     routines: list[Routine] = []
-    while not cursor.accept("endmodule"):
+    while cursor.kind != end:
         begin = cursor.start
         local = cursor.accept("local")
         if not local:
             cursor.accept("task")
         kind = cursor.kind
         if kind in STORAGE:
-            declarations.append(_declaration(cursor, begin, local))
+            declarations += _mended(cursor, begin, local)
         elif kind in ROUTINES:
             routines.append(_routine(cursor, begin, local))
         elif kind == "record":
@@ -77,6 +106,7 @@ def _module(cursor: Cursor) -> Module:
             types.append(_alias(cursor, begin, local))
         else:
             raise cursor.unexpected("a declaration, PROC, FUNC, TRAP or ENDMODULE")
+    cursor.advance()
     return Module(
         cursor.span_from(start),
         text.lower(),
@@ -96,6 +126,18 @@ def _attributes(cursor: Cursor) -> tuple[str, ...]:
                 cursor.expect(",", "between the attributes of a module")
             attributes.append(cursor.name("an attribute of the module").lower())
     return tuple(attributes)
+
+
+def _mended(cursor: Cursor, start: int, local: bool = False) -> list[Declaration]:
+    """A declaration; none where it is damaged and may be stepped over."""
+    begin, depth = cursor.index, cursor.depth
+    try:
+        return [_declaration(cursor, start, local)]
+    except ParseError as error:
+        cursor.step_over(error)
+        cursor.depth = depth
+        cursor.skip_statement(begin, (*_PARTS, *CLOSING))
+        return []
 
 
 def _declaration(cursor: Cursor, start: int, local: bool = False) -> Declaration:
@@ -135,9 +177,9 @@ def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
     returns = cursor.name("the function's type").lower() if kind == "func" else None
     text = cursor.name(f"the name of the {kind.upper()}")
     parameters = _parameters(cursor) if kind != "trap" else ()
-    declarations = []
+    declarations: list[Declaration] = []
     while cursor.kind in STORAGE:
-        declarations.append(_declaration(cursor, cursor.start))
+        declarations += _mended(cursor, cursor.start)
     end = f"end{kind}"
     ends = frozenset({end, *HANDLERS})
     head = f"{kind.upper()} {text}"

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
+from ....core.errors import ParseError, SourceError
 from . import tree
 from .cursor import Cursor
 from .expressions import parse_arguments, parse_expression, parse_name
 from .lexer import END, NAME
 from .tree import Block, Statement
 
-_CLOSING = frozenset(
+CLOSING = frozenset(
     {"else", "elseif", "endif", "endfor", "endwhile", "case", "default", "endtest"}
     | {"endproc", "endfunc", "endtrap", "endmodule", "proc", "func", "trap", END}
     | {"error", "undo", "backward"}
@@ -30,16 +32,38 @@ def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int
     Raises:
         SourceError: another block's end, or the end of the file, comes first.
     """
-    statements = []
+    statements: list[Statement] = []
     with cursor.nested():
         while (kind := cursor.kind) not in ends:
-            if kind in _CLOSING:
+            if kind in CLOSING:
                 (closing,) = (end.upper() for end in ends if end.startswith("end"))
                 line = cursor.source.span(start, start).line
-                raise cursor.unexpected(f"{closing}, to close {opened_by} of line {line},")
-            if not cursor.accept(";"):  # one too many does no harm
+                raise cursor.torn(f"{closing}, to close {opened_by} of line {line},")
+            if cursor.accept(";"):  # one too many does no harm
+                continue
+            begin, depth = cursor.index, cursor.depth
+            try:
                 statements.append(parse_statement(cursor))
+            except ParseError as error:
+                statements.append(_unread(cursor, begin, depth, error))
     return Block(tuple(statements))
+
+
+def _unread(cursor: Cursor, begin: int, depth: int, error: SourceError) -> tree.Unread:
+    """What is no statement, in a text that is read all the same.
+
+    Raises:
+        SourceError: it is not.
+    """
+    cursor.step_over(error)
+    cursor.depth = depth
+    cursor.skip_statement(begin, _BEGINNING)
+    span = cursor.source.span(cursor.starts[begin], cursor.end)
+    moves = _MOTION.search(cursor.source.text, span.start, span.end) is not None
+    return tree.Unread(span, error.message, moves)
+
+
+_MOTION = re.compile(r"(?i)(?<!\w)(?:move(?:abs)?|trigg|search|arc|spot|disp|paint)[ljc](?!\w)")
 
 
 def parse_statement(cursor: Cursor) -> Statement:
@@ -64,7 +88,7 @@ def _name_statement(cursor: Cursor, start: int) -> Statement:
         return _assignment(cursor, start)
     text = cursor.name("an instruction")
     arguments = parse_arguments(cursor, ";")
-    cursor.advance()
+    cursor.expect(";", "at the end of the statement")
     return tree.Invoke(cursor.span_from(start), text.lower(), text, arguments)
 
 
@@ -80,7 +104,7 @@ def _late_call(cursor: Cursor, start: int) -> tree.LateInvoke:
     routine = parse_expression(cursor)
     cursor.expect("%", "to end the name of the routine")
     arguments = parse_arguments(cursor, ";")
-    cursor.advance()
+    cursor.expect(";", "at the end of the statement")
     return tree.LateInvoke(cursor.span_from(start), routine, arguments)
 
 
@@ -194,3 +218,5 @@ _BY_KEYWORD: dict[str, Callable[[Cursor, int], Statement]] = {
     "connect": _connect,
     "<": _placeholder,
 }
+_BEGINNING = CLOSING | _BY_KEYWORD.keys()
+"""Words at the beginning of a line with which what stands before them is over."""

@@ -24,6 +24,7 @@ Test = nodes.Switch
 Text = nodes.Text
 Truth = nodes.Truth
 Unary = nodes.Unary
+Unread = nodes.Unread
 While = nodes.While
 
 

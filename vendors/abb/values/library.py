@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ....core.errors import Note, SourceError, Span
+from ....core.source.text.damage import Damage
 from ....core.source.text.files import SourceFile, SourceText, unbroken
 from ..syntax.parser import parse
 from ..syntax.tree import Module
@@ -30,13 +31,14 @@ class _Shelved:
     """A file that may be taken in."""
 
     file: SourceFile
+    damage: Damage | None = None
     modules: tuple[Module, ...] | None = None
     error: SourceError | None = None
 
     def parsed(self) -> tuple[Module, ...]:
         if self.modules is None and self.error is None:
             try:
-                self.modules = parse(SourceText(self.file.text, self.file.name))
+                self.modules = parse(SourceText(self.file.text, self.file.name, self.damage))
             except SourceError as error:
                 self.error = error
         return self.modules or ()
@@ -49,11 +51,16 @@ class Library:
         files: by name.
         loaded: whether the controller has all of them loaded, as a backup says: taking one in is
             then nothing to speak of.
+        mended: whether what is no statement is stepped over.
     """
 
-    def __init__(self, files: Mapping[str, SourceFile], *, loaded: bool = False) -> None:
+    def __init__(
+        self, files: Mapping[str, SourceFile], *, loaded: bool = False, mended: bool = False
+    ) -> None:
         self._loaded = loaded
-        self._shelf = {name: _Shelved(file) for name, file in files.items()}
+        self._shelf = {
+            name: _Shelved(file, Damage() if mended else None) for name, file in files.items()
+        }
         self._index: dict[str, list[str]] | None = None
         self._reasons: dict[str, str] = {}
 

@@ -119,7 +119,8 @@ class KrlTree:
             return self._invoked(statement.call, home, functions, names, handed)
         writes, outputs = self._assigned(statement, home)
         return Step(
-            moves=isinstance(statement, tree.MotionInstruction | tree.SplineBlock),
+            moves=isinstance(statement, tree.MotionInstruction | tree.SplineBlock)
+            or (isinstance(statement, tree.Unread) and statement.moves),
             writes=handed | writes,
             made_of=names,
             outputs=outputs,

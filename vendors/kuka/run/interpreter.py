@@ -59,6 +59,7 @@ from ..syntax.tree import (
     StrucDefinition,
     Switch,
     Trigger,
+    Unread,
     WaitFor,
     WaitSec,
     While,
@@ -115,7 +116,7 @@ class Interpreter:
         basis = Basis(data, evaluator, config, tables, notes, self._system_changed)
         tree = KrlTree(data, evaluator.names, scopes)
         self._analysis = analysis = Analysis(tree)
-        writes = OutputWrites(data, evaluator.names, tree, analysis)
+        writes = OutputWrites(data, evaluator.names, tree, analysis, notes)
         self._triggers = Triggers(evaluator, transcript, writes)
         self._motions = MotionReader(
             data,
@@ -165,6 +166,7 @@ class Interpreter:
             WaitFor: waits.wait_for,
             Trigger: self._triggers.trigger,
             Keyword: waits.keyword,
+            Unread: self._unread,
             SplineBlock: self._spline,
             Declaration: self._declare,
             SignalDeclaration: self._define,
@@ -268,6 +270,13 @@ class Interpreter:
         except SourceError as error:
             if not self._transcript.leaves_open(error, statement.span):
                 raise
+            self._meter.move(statement.span)
+            self._position.left_out(statement.span)
+
+    def _unread(self, statement: Unread, scope: Scope) -> None:
+        if not statement.moves:
+            self._transcript.keep(statement.span, "", "")
+        elif self._transcript.leaves_open(statement.error, statement.span):
             self._meter.move(statement.span)
             self._position.left_out(statement.span)
 

@@ -7,6 +7,7 @@ import re
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.transcript import Notes
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor
 from ..syntax.lexer import tokenize
@@ -33,10 +34,14 @@ class OutputWrites:
         names: finds the outputs that a name stands for.
         tree: the program's statements.
         analysis: what they write.
+        notes: of the run.
     """
 
-    def __init__(self, data: Data, names: Names, tree: KrlTree, analysis: Analysis[Block]) -> None:
+    def __init__(
+        self, data: Data, names: Names, tree: KrlTree, analysis: Analysis[Block], notes: Notes
+    ) -> None:
         self._data = data
+        self._notes = notes
         self._tree = tree
         self._names = names
         self._analysis = analysis
@@ -63,6 +68,14 @@ class OutputWrites:
             return
         self._data.outputs.share(self._by_action(handler[1], scope))
         action = Block(_statements(handler[1]) or ())
+        if self._analysis.moves(action):
+            self._notes.once(
+                f"interrupt {handler[1]}",
+                f"the interrupt's {handler[1].strip()} moves the robot whenever it comes, which "
+                "nobody knows: what it drives is not in the path and the times; the program is "
+                "driven as if it never came",
+                span,
+            )
         writer = f"the interrupt's {' '.join(_PRIORITY.sub('', handler[1]).split())}"
         for part, names in self._analysis.written_apart(action):
             found = self._tree.routine(part)

@@ -33,6 +33,7 @@ from ....core.program.entry_point import ALL, entry_call, listed
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions
+from ....core.source.text.damage import nothing_driven
 from ....core.source.text.files import SourceText
 from ..syntax.parser import parse
 from ..syntax.tree import Expression, Invoke, Routine
@@ -56,7 +57,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
     if suffix_of(main) == ".dat":
         raise SourceError(COMPANIONS[".dat"], start)
     with collection_paused():
-        library = Library(files, main)
+        library = Library(files, main, options.answers.goes_on)
         name, given = entry_call(options.entry)
         if name == ALL and ALL not in library.main.routines:
             points = Interpreter(library, options).entry_points(library.main_unit.routines)
@@ -78,6 +79,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
             raise SourceError(
                 "expressions, blocks and calls are nested too deeply", entry.span
             ) from None
+        nothing_driven(library.damages, run.driven)
         return Program(
             run.statements(),
             entry.text,

@@ -170,6 +170,8 @@ def _items(cursor: Cursor, closing: str, where: str) -> tuple[Expression | None,
         return ()
 
     def item(cursor: Cursor) -> Expression | None:
+        if cursor.kind == ":" and cursor.peek() == NAME:  # a channel: COPEN(:SER_2, HANDLE)
+            cursor.advance()
         return None if cursor.kind in (",", closing) else parse_expression(cursor)
 
     items = cursor.listed(item)

@@ -5,7 +5,9 @@ A descent by hand over the tokens of `lexer`, for its messages and its speed.
 
 from __future__ import annotations
 
-from ....core.errors import Note
+from pathlib import PurePath
+
+from ....core.errors import Note, ParseError
 from ....core.source.text.files import SourceText
 from .cursor import Cursor
 from .expressions import parse_indices
@@ -17,9 +19,19 @@ from .tree import Block, DataList, Parameter, Routine, Unit
 def parse(source: SourceText) -> Unit:
     """What a source text holds.
 
+    Where statements of it may be stepped over, a file that is only a part of one, without DEF or
+    DEFDAT, is read as if they stood round it.
+
     Raises:
         SourceError: the text is no KRL, or is cut off.
     """
+    try:
+        return _parse(source)
+    except ParseError as error:
+        raise (error if source.damage is None else source.damage.first(error)) from None
+
+
+def _parse(source: SourceText) -> Unit:
     cursor = Cursor(tokenize(source))
     routines: list[Routine] = []
     lists: list[DataList] = []
@@ -38,11 +50,32 @@ def parse(source: SourceText) -> Unit:
             break
         elif kind in CLOSING:
             raise cursor.unexpected("DEF, DEFFCT or DEFDAT")
+        elif source.damage is not None and not routines and not lists:
+            _add_part(cursor, routines, lists)
         else:
             raise cursor.unexpected("DEF, DEFFCT or DEFDAT (a program begins with one)")
     if not routines and not lists:
         raise source.error("the file holds no DEF and no DEFDAT: it is empty or no KRL", 0)
+    if source.damage is not None:
+        notes += source.damage.notes()
     return Unit(source, tuple(routines), tuple(lists), tuple(notes))
+
+
+def _add_part(cursor: Cursor, routines: list[Routine], lists: list[DataList]) -> None:
+    """A part of a program, or of a data list, is read as all of it."""
+    start = cursor.start
+    path = PurePath(cursor.source.file.replace("\\", "/"))
+    data = path.suffix.lower() == ".dat"
+    kind = "DEFDAT" if data else "DEF"
+    span = cursor.source.span(start, start)
+    part = cursor.source.error(f"the file is a part of a program, without {kind}", start)
+    cursor.step_over(part, f"it is read as {kind} {path.stem}")
+    body = parse_block(cursor, frozenset({END}), f"the {kind}", start)
+    name = path.stem.lower()
+    if data:
+        lists.append(DataList(span, name, path.stem, False, body))
+    else:
+        routines.append(Routine(span, name, path.stem, (), body, None, False))
 
 
 def _routine(cursor: Cursor, start: int, shared: bool, notes: list[Note]) -> Routine:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from ....core.errors import Span
+from ....core.errors import ParseError, SourceError, Span
 from ....core.source.text.lexer import words
 from . import tree
 from .closed_folds import parse_closed
@@ -43,10 +44,33 @@ def parse_block(cursor: Cursor, ends: frozenset[str], opened_by: str, start: int
             elif kind == END or kind in CLOSING:
                 line = cursor.source.span(start, start).line
                 wanted = " or ".join(sorted(end.upper() for end in ends - {END}))
-                raise cursor.unexpected(f"{wanted}, to close {opened_by} of line {line},")
+                raise cursor.torn(f"{wanted}, to close {opened_by} of line {line},")
             else:
-                statements.extend(parse_statement(cursor))
+                begin, depth = cursor.index, cursor.depth
+                try:
+                    statements.extend(parse_statement(cursor))
+                except ParseError as error:
+                    statements.append(_unread(cursor, begin, depth, error))
     return Block(tuple(statements))
+
+
+def _unread(cursor: Cursor, begin: int, depth: int, error: SourceError) -> tree.Unread:
+    """A line that is no statement, in a text that is read all the same.
+
+    Raises:
+        SourceError: it is not.
+    """
+    cursor.step_over(error)
+    cursor.depth = depth
+    if cursor.index == begin or not cursor.begins_line():
+        cursor.skip_line()
+    span = cursor.source.span(cursor.starts[begin], cursor.ends[max(begin, cursor.index - 1)])
+    cursor.accept(NEWLINE)
+    moves = _MOTION.search(cursor.source.text, span.start, span.end) is not None
+    return tree.Unread(span, error.message, moves)
+
+
+_MOTION = re.compile(r"(?i)(?<![\w$])s?(?:ptp|lin|circ)(?:_rel)?(?![\w$])")
 
 
 def parse_statement(cursor: Cursor) -> tuple[Statement, ...]:

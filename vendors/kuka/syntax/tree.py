@@ -27,6 +27,7 @@ Switch = nodes.Switch
 Text = nodes.Text
 Truth = nodes.Truth
 Unary = nodes.Unary
+Unread = nodes.Unread
 While = nodes.While
 
 

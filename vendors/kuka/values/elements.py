@@ -320,11 +320,17 @@ class Names:
         )
 
     def index(self, expression: Expression, scope: Scope) -> int:
-        """A known whole number.
+        """A known whole number; of one that others may write, what it last was.
 
         Raises:
             SourceError: it is none.
         """
+        value = self.expressions.evaluate(expression, scope)
+        last = supposed(value) if isinstance(value, Unknown) else None
+        if isinstance(value, Unknown) and isinstance(last, int) and self.course.answers.goes_on:
+            message = f"an index depends on {value.reason}: {last}, which it was last, is taken"
+            self.course.decided(expression.span, message)
+            return int(last)
         value = self.expressions.number(expression, scope, "an index")
         if value != int(value):
             raise SourceError(f"an index is a whole number, not {value:g}", expression.span)

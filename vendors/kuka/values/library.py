@@ -13,6 +13,7 @@ from importlib import resources
 
 from ....core.errors import Note, SourceError
 from ....core.source.reading import Files
+from ....core.source.text.damage import Damage
 from ....core.source.text.files import SourceText
 from ..syntax.parser import parse
 from ..syntax.tree import Routine, Unit
@@ -40,13 +41,19 @@ class Library:
 
     Args:
         main: name of the file with the entry.
+        mended: whether what is no statement is stepped over.
+
+    Attributes:
+        damages: of the files that have been read, where they are mended.
 
     Raises:
         SourceError: the main file or its data list is no KRL.
     """
 
-    def __init__(self, files: Files, main: str) -> None:
+    def __init__(self, files: Files, main: str, mended: bool = False) -> None:
         self._files = files
+        self._mended = mended
+        self.damages: list[Damage] = []
         self._modules: dict[str, Module] = {}
         self._sources: dict[str, list[str]] = {}
         for name in files:
@@ -113,11 +120,15 @@ class Library:
     def _parse(self, name: str) -> Unit:
         file = self._files[name]
         self.texts[name] = file.text
+        damage = Damage() if self._mended else None
         try:
-            return parse(SourceText(file.text, name))
+            unit = parse(SourceText(file.text, name, damage))
         except RecursionError:
             source = SourceText(file.text, name)
             raise source.error("expressions and blocks are nested too deeply", 0) from None
+        if damage is not None:
+            self.damages.append(damage)
+        return unit
 
     def _config(self) -> list[Module]:
         """The user's ``$CONFIG.DAT``, if there is one, and the one that is shipped."""

@@ -66,7 +66,8 @@ class ScriptTree:
         foreign = {name for name in called if name not in self._functions}
         names = frozenset[str]().union(*map(self.reads, expressions))
         return Step(
-            moves=not foreign.isdisjoint(MOVES),
+            moves=not foreign.isdisjoint(MOVES)
+            or (isinstance(statement, tree.Unread) and statement.moves),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
             made_of=names,

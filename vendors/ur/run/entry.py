@@ -10,6 +10,7 @@ from pathlib import PurePath
 from ....core.errors import SourceError
 from ....core.program.entry_point import ALL, EntryPoint, listed
 from ....core.program.program import Program
+from ....core.source.text.damage import nothing_driven
 from ..syntax.traversal import all_calls
 from ..syntax.tree import Assign, Block, Call, Define
 from .exits import Finished
@@ -56,6 +57,8 @@ def run_program(
         else:
             name = _run_top(run, blocks, name)
     run.out.check_driven()
+    if run.texts.damage is not None:
+        nothing_driven([run.texts.damage], run.out.move_index > 0)
     return Program(
         run.statements(),
         name,

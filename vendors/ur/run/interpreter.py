@@ -12,7 +12,7 @@ from contextlib import suppress
 from typing import Any, NoReturn
 from weakref import proxy
 
-from ....core.errors import Note, Span
+from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
@@ -39,6 +39,7 @@ from ..syntax.tree import (
     StartThread,
     Statement,
     ThreadEnd,
+    Unread,
     While,
 )
 from ..values.answers import answer
@@ -191,13 +192,22 @@ class Interpreter:
         unused = isinstance(statement, Evaluate) and statement.expression is call
         return answer(self, call, name, listed=not unused)
 
+    def stopped_somewhere(self, error: SourceError, span: Span) -> None:
+        """The robot is where nobody knows; see `ThreadsRun`."""
+        if not self.out.leaves_open(error, span):
+            raise error
+        self.meter.move(span)
+        self.position.left_out(span)
+
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
         return self.out.statements(self.literals.reads)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about the run."""
-        return (*self.texts.notes, *self.course.notes(), *self.out.notes.notes())
+        damage = self.texts.damage
+        torn = () if damage is None else damage.notes()
+        return (*self.texts.notes, *torn, *self.course.notes(), *self.out.notes.notes())
 
     # ------------------------------------------------------------- what expressions do
 
@@ -256,6 +266,14 @@ def _keyword(run: Interpreter, statement: Keyword, scope: Scope) -> None:
         raise Finished
 
 
+def _unread(run: Interpreter, statement: Unread, scope: Scope) -> None:
+    span = run.texts.span_of(statement)
+    if statement.moves:
+        run.stopped_somewhere(SourceError(statement.message, span), span)
+    else:
+        run.out.keep(span, "", "")
+
+
 def _define(run: Interpreter, statement: Define, scope: Scope) -> None:
     scope.define((statement,))
 
@@ -269,4 +287,5 @@ _STATEMENTS: dict[type, Callable[[Interpreter, Any, Scope], None]] = {
     Keyword: _keyword,
     ThreadEnd: threads.end,
     Define: _define,
+    Unread: _unread,
 }

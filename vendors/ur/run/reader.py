@@ -39,6 +39,7 @@ from ....core.program.entry_point import entry_call
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
+from ....core.source.text.damage import Damage
 from ....core.source.text.files import SourceFile
 from ..syntax.statements import parse
 from ..syntax.texts import Texts
@@ -143,7 +144,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
     ordered = [*(f for name, f in files.items() if name != main), files[main]]
     if arguments:
         ordered.insert(0, SourceFile("--entry", f"{name}({arguments})\n"))
-    texts = Texts(ordered)
+    texts = Texts(ordered, Damage() if options.answers.goes_on else None)
     try:
         with collection_paused():
             return _read(texts, main, replace(options, entry=name), bool(arguments))

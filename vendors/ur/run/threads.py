@@ -89,6 +89,13 @@ class ThreadsRun(Evaluation, Protocol):
     def finish(self, message: str, span: Span) -> NoReturn:
         """End the program here, with a note."""
 
+    def stopped_somewhere(self, error: SourceError, span: Span) -> None:
+        """The robot has been stopped where nobody knows.
+
+        Raises:
+            SourceError: ``error``, where programs do not go on behind such.
+        """
+
 
 def check_free(threads: Iterable[Started], span: Span) -> None:
     """Refuse a move while a thread without an end moves the robot.
@@ -188,11 +195,13 @@ def end(run: ThreadsRun, statement: ThreadEnd, scope: Scope) -> None:
             _release(run.outputs, thread, span)
     elif statement.word == "kill":
         if thread.endless or thread.waited or run.decisions != thread.decided:
-            raise SourceError(
+            error = SourceError(
                 f"thread {thread.name} moves the robot and is stopped on the way: where the robot "
                 "is by then is only known at run time",
                 span,
             )
+            thread.endless = False
+            run.stopped_somewhere(error, span)
     elif thread.endless:
         run.finish(f"thread {thread.name}, which is waited for, never ends", span)
 

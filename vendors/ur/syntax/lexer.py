@@ -68,6 +68,9 @@ def tokenize(texts: Texts, which: int) -> Tokens:
         return text[start], end
 
     def line(kinds: list[str], _: int, end: int) -> tuple[str, int]:
+        nonlocal depth
+        if depth and texts.damage is not None and _begins_statement(kinds, text, end):
+            depth = 0  # a bracket that nobody closes
         return "" if depth or kinds[-1:] in ([], [LINE]) else LINE, end
 
     special = {"bracket": bracket, "line": line}
@@ -101,6 +104,18 @@ def number_value(literal: str) -> int | float:
 def numbers_in(literal: str) -> list[tuple[int, int]]:
     """Where the numbers stand in the text of a list or pose: start and end, signs included."""
     return [found.span() for found in _NUMBER_IN_LIST.finditer(literal)]
+
+
+_OPEN = frozenset({*"([,+-*/%=<>&|^~.:", "==", "!=", "<=", ">=", "and", "or", "xor", "not"})
+"""Kinds of token behind which a line goes on."""
+_STATEMENT = re.compile(
+    r"\s*(?:(?:end|if|while|def|thread|else|elif|return|global|local|halt)\b|\w+\s*[(=])"
+)
+
+
+def _begins_statement(kinds: list[str], text: str, end: int) -> bool:
+    """Whether a new statement begins behind an end of line inside brackets."""
+    return bool(kinds) and kinds[-1] not in _OPEN and _STATEMENT.match(text, end) is not None
 
 
 def _stray(text: str, at: int) -> str:

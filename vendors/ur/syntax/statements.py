@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
-from ....core.errors import Note
+from ....core.errors import Note, ParseError
 from ....core.source.text.lexer import words
 from . import tree
 from .cursor import Cursor
@@ -25,6 +26,13 @@ def parse(texts: Texts, which: int) -> Block:
     Raises:
         SourceError: the text is no URScript, or is cut off.
     """
+    try:
+        return _parse(texts, which)
+    except ParseError as error:
+        raise (error if texts.damage is None else texts.damage.first(error)) from None
+
+
+def _parse(texts: Texts, which: int) -> Block:
     cursor = Cursor(tokenize(texts, which))
     statements: list[Statement] = []
     cursor.skip_lines()
@@ -35,11 +43,28 @@ def parse(texts: Texts, which: int) -> Block:
                 "'while' above it is missing",
                 cursor.start,
             )
-        statements.append(_statement(cursor))
+        statements.append(_mended(cursor))
         cursor.skip_lines()
     return tuple(statements)
 
 
+def _mended(cursor: Cursor) -> Statement:
+    """A statement, or what is none and may be stepped over."""
+    begin, depth, loops = cursor.index, cursor.depth, cursor.loops
+    try:
+        return _statement(cursor)
+    except ParseError as error:
+        cursor.step_over(error)
+        cursor.depth, cursor.loops = depth, loops
+        if cursor.index == begin or not cursor.begins_line():
+            while cursor.kind not in (LINE, END):
+                cursor.index += 1
+        start, end = cursor.starts[begin], cursor.ends[max(begin, cursor.index - 1)]
+        moves = _MOTION.search(cursor.source.cut(start, end)) is not None
+        return tree.Unread(start, end, error.message, moves)
+
+
+_MOTION = re.compile(r"(?<!\w)(?:(?:opti)?move[jlpc]|servo[jc]|speed[jl])(?!\w)")
 _PYTHON = ("for", "import", "from", "try", "class", "print", "lambda")
 """Words that begin statements of Python."""
 
@@ -52,8 +77,8 @@ def _block(cursor: Cursor, ends: frozenset[str], opening: str) -> Block:
         cursor.skip_lines()
         while cursor.kind not in ends:
             if cursor.kind == END:
-                raise cursor.unexpected(f"'end' of {opening}")
-            statements.append(_statement(cursor))
+                raise cursor.torn(f"'end' of {opening}")
+            statements.append(_mended(cursor))
             cursor.skip_lines()
     return tuple(statements)
 

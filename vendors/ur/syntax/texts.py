@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from ....core.errors import Note, ParseError, SourceError, Span
+from ....core.source.text.damage import Damage
 from ....core.source.text.files import SourceFile, SourceText
 
 
@@ -27,12 +28,14 @@ class Texts:
 
     Args:
         files: in the order in which they are executed.
+        damage: what is wrong in them and stepped over; None where an error ends their reading.
 
     Attributes:
         notes: on what is wrong with them and does no harm.
     """
 
-    def __init__(self, files: Iterable[SourceFile]) -> None:
+    def __init__(self, files: Iterable[SourceFile], damage: Damage | None = None) -> None:
+        self.damage = damage
         self.notes: list[Note] = []
         self.sources = [SourceText(file.text, file.name) for file in files]
         self.bases: list[int] = []

@@ -35,6 +35,19 @@ class Statement(Node):
 
 
 @dataclass(frozen=True, slots=True)
+class Unread(Statement):
+    """What is no statement, in a text that is read all the same.
+
+    Args:
+        message: why.
+        moves: whether it looks like a motion.
+    """
+
+    message: str
+    moves: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Number(Expression):
     """A number, with its sign if one stands before it."""
 

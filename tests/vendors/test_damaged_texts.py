@@ -1,0 +1,137 @@
+"""Texts that no controller takes, in every language: what can be read is driven, and it is said."""
+
+from __future__ import annotations
+
+import pytest
+
+from flyby.core.errors import ParseError, SourceError
+from flyby.core.program.move import Opaque
+from flyby.core.program.program import Program
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.execution.answers import Answers
+
+ROBOTS = {"abb": "abb/irb1200-5-090", "kuka": "kuka/kr30-3", "ur": "ur/ur5e"}
+FRAME = {
+    "abb": "MODULE demo\nVAR num n;\nPROC main()\n{}\nENDPROC\nENDMODULE\n",
+    "kuka": "DEF demo( )\nBAS(#INITMOV,0)\n{}\nEND\n",
+    "ur": "def demo():\n{}\nend\n",
+}
+HOME = {
+    "abb": "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v1000,fine,tool0;",
+    "kuka": "PTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}",
+    "ur": "movej([0,-1.57,1.57,-1.57,-1.57,0])",
+}
+LOW = {
+    "abb": "MoveJ [[450,0,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;",
+    "kuka": "PTP {X 1300,Y 0,Z 900,A 0,B 90,C 0}",
+    "ur": "movej(p[-0.45,0.1,0.3,2.2214,2.2214,0])",
+}
+STILL = {
+    "abb": ("n = n + 1;", "TPWrite \"it's;", "n:=;", "Set do1 do2;"),
+    "kuka": ('TPWrite "hello"', "PRINT “done”", "n = 3 +", '$OUT[1] == TRUE = "a'),
+    "ur": ("n += 1", 'print "hello"', "n = {{START}}", "set_digital_out(1, True"),
+}
+"""Statements that are none, and no motions."""
+MOTION = {
+    "abb": "MoveJ [[450,0,600],v100,fine,tool0;",
+    "kuka": "PTP {X 1300,Y 0 Z,900}",
+    "ur": "movej(p[-0.45,0.1,0.3,2.2214,2.2214,0]",
+}
+OPEN = {"abb": "IF n=1 THEN", "kuka": "IF n==1 THEN", "ur": "if n == 1:"}
+SUFFIX = {"abb": "demo.mod", "kuka": "demo.src", "ur": "demo.script"}
+LANGUAGES = tuple(ROBOTS)
+
+
+def read(language: str, *lines: str, text: str = "{}", goes_on: bool = True) -> Program:
+    whole = (
+        text.format("\n".join(lines)) if text != "{}" else FRAME[language].format("\n".join(lines))
+    )
+    return find_vendor(language).read(
+        whole,
+        SUFFIX[language],
+        robot=find_robot(ROBOTS[language]),
+        answers=Answers(goes_on=goes_on),
+    )
+
+
+@pytest.mark.parametrize(("language", "line"), [(v, line) for v in LANGUAGES for line in STILL[v]])
+def test_what_is_no_statement_is_stepped_over_and_said(language, line) -> None:
+    made = read(language, HOME[language], line, LOW[language])
+    assert len(made.moves) == 2
+    assert not any(move.open for move in made.moves)
+    assert any(isinstance(s, Opaque) and s.text == line for s in made.statements)
+    (note,) = (n for n in made.notes if "no controller takes this; it is stepped over" in n.message)
+    head = FRAME[language].partition("{}")[0].count("\n")
+    assert note.span is not None
+    assert note.span.line == head + 2
+
+
+@pytest.mark.parametrize(("language", "line"), [(v, line) for v in LANGUAGES for line in STILL[v]])
+def test_a_strict_reader_refuses_it(language, line) -> None:
+    with pytest.raises(ParseError):
+        read(language, HOME[language], line, LOW[language], goes_on=False)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_damaged_motion_goes_where_nobody_knows(language) -> None:
+    made = read(language, HOME[language], MOTION[language], LOW[language])
+    assert [bool(move.open) for move in made.moves] == [False, True, False]
+    span = made.moves[1].statement
+    assert span is not None
+    assert span.line == FRAME[language].partition("{}")[0].count("\n") + 2
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_nothing_to_drive_and_blocks_that_nobody_closes_are_refused_for_the_first_damage(
+    language,
+) -> None:
+    line = STILL[language][0]
+    place = f":{FRAME[language].partition('{}')[0].count(chr(10)) + 1}:"
+    with pytest.raises(SourceError, match=place):
+        read(language, line)
+    if language == "ur":  # the 'end' of the function closes it
+        return
+    with pytest.raises(SourceError, match=place):
+        read(language, line, HOME[language], OPEN[language])
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_is_damaged_all_over_is_no_program(language) -> None:
+    lines = [line for line in STILL[language] for _ in range(12)]
+    with pytest.raises(ParseError):
+        read(language, HOME[language], *lines, LOW[language])
+
+
+def test_a_semicolon_that_is_missing_is_read_as_if_it_stood_there() -> None:
+    made = read("abb", HOME["abb"].rstrip(";"), "n:=n+1", "WaitTime 1", LOW["abb"])
+    assert len(made.moves) == 2
+    assert (
+        "it is read as if it stood there (and 2 like it)" in told(made)
+        or told(made).count("it is read as if it stood there") == 3
+    )
+
+
+def test_arguments_go_on_in_the_next_line() -> None:
+    made = read("abb", HOME["abb"], "n:=;", LOW["abb"].replace(",v100,", "\n,v100,\n"))
+    assert not made.moves[1].open
+
+
+@pytest.mark.parametrize(
+    ("language", "text"),
+    [
+        ("abb", "VAR num n;\nPROC main()\n{}\nENDPROC\n"),
+        ("kuka", "$VEL.CP=0.1\n{}\n"),
+        ("ur", "{}\n"),
+    ],
+)
+def test_a_part_of_a_program_is_read_as_all_of_it(language, text) -> None:
+    made = read(language, HOME[language], LOW[language], text=text)
+    assert len(made.moves) == 2
+    if language != "ur":
+        assert "is read as" in told(made)
+        with pytest.raises(ParseError):
+            read(language, HOME[language], LOW[language], text=text, goes_on=False)
+
+
+def told(made: Program) -> str:
+    return " ".join(note.message for note in made.notes)
