@@ -33,6 +33,7 @@ def words_of(name: str) -> tuple[str, ...]:
     """What a name consists of: ``IRB 120T-3/0.58`` is irb, 120t, 3 and 0.58."""
     said = _VARIANT.sub("", name.strip().lower().replace(",", "."))
     said = _BESIDE.sub(" ", re.sub(r"[#_/\-]", " ", said))
+    said = said.replace("lean id", "lid").replace("leanid", "lid")  # as controllers write it
     for family, model in _FAMILIES.items():
         said = said.replace(family, " " if model.split()[1] in said else model)
     said = re.sub(r"(?<=\d)r(?=\d{3,4})", " r ", said)

@@ -102,6 +102,8 @@ CALLED = {
     "Universal Robots UR 10 e": "ur/ur10e",
     "UR-16e": "ur/ur16e",
     "UR5 CB3": "ur/ur5",
+    "IRB 6700-150/3.20 LeanID": "abb/irb6700-150-320-lid",
+    "IRB 5710-90/2.30 Lean ID": "abb/irb5710-90-230-lid",
 }
 
 

@@ -183,7 +183,8 @@ def _with_ranges(
         doubts = (*doubts, f"{', '.join(unknown)}: {said}")
     if ranges:
         doubts = tuple(doubt for doubt in doubts if not doubt.startswith(_BETWEEN_ARMS))
-    lacks = [] if len(records) == robot.arm_size else [_partly(robot, len(records))]
+    motors = sum(not joint.held for joint in robot.joints)
+    lacks = [] if len(records) >= motors else [_partly(len(records), motors)]
     robot = replace(
         robot,
         joints=tuple(joints),
@@ -216,10 +217,10 @@ def _coupled(joint: Joint, record: Record) -> CoupledRange | None:
     return CoupledRange(((joint.name, 1.0), (drivers[0], -1.0)), lower, upper, reason)
 
 
-def _partly(robot: Robot, stated: int) -> str:
+def _partly(stated: int, joints: int) -> str:
     return (
-        f"MOC.cfg states the ranges of {stated} of {robot.arm_size} joints: of the others those of "
-        "the type are taken"
+        f"MOC.cfg states the ranges of {stated} of {joints} joints: of the others those of the "
+        "type are taken"
     )
 
 

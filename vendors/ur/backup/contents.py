@@ -27,6 +27,8 @@ PASSED_OVER = "passed over: "
 _MOVING = "Waypoint", "CircleMove", "MoveDirection", "SafeHome"
 _MOVE = re.compile(r"^[ \t]*(?:move[jlpc]|optimovej|optimovel)[ \t]*\(", re.MULTILINE)
 _FUNCTION = re.compile(r"^[ \t]*def[ \t]+(\w+)[ \t]*\([ \t]*\)", re.MULTILINE)
+_NO_TEXT = re.compile(r"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
+"""Characters that no script has."""
 MOST_FILES = 20_000
 """Programs and installations that are looked at; a folder of a robot has some hundreds."""
 
@@ -135,7 +137,11 @@ def _add_program(contents: Contents, name: str) -> None:
         _add_script(contents, name, text, name)
         return
     if not is_xml(plain):
-        _add_script(contents, name, decode(plain, str(path))[0])
+        text = decode(plain, str(path))[0]
+        if not text.strip() or _NO_TEXT.search(text):
+            what = "is neither a program's tree nor a script" if text.strip() else "is empty"
+            raise InputError(f"{path}: {what}: copy it from the controller again")
+        _add_script(contents, name, text)
         return
     script = path.with_suffix(SCRIPT)
     beside = PurePosixPath(name).with_suffix(SCRIPT).as_posix() if script.is_file() else None

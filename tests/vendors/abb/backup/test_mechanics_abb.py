@@ -338,3 +338,28 @@ def test_units_that_stand_on_nothing_known(on: str) -> None:
     (found,) = made(sections).robots
     assert found.robot is not None and len(found.robot.external_axes) == 2
     assert f"unit TRACK_1 stands on {on}, which is not known" in " / ".join(found.lacks)
+
+
+def test_an_arm_of_four_motors_lacks_no_ranges() -> None:
+    ranges = ((-140, 140), (-150, 150), (0, 0), (-400, 400), (0, 0), (0, 0))
+    sections = dict(one_robot(ranges=ranges, kind="910SC_0.55_3"))
+    slides = '-name "rob1_3" -upper_joint_bound 0 -lower_joint_bound -0.18'
+    sections["ARM"] = [*sections["ARM"][:2], slides, sections["ARM"][3]]
+    (found,) = made(sections).robots
+    assert found.robot is not None and found.robot.name == "abb/irb910sc-3-055"
+    assert not any("states the ranges" in lack for lack in found.lacks)
+    assert found.robot.joints[2].lower == -0.18
+
+
+@pytest.mark.parametrize(
+    ("kind", "why"),
+    [
+        ("360_1.6_6", "IRB 360-6/1600 cannot be driven: it is a delta robot"),
+        ("14000_0.5_0.5", "each of its two arms has seven axes"),
+        ("6700_3.20_150", "no arm ROB1_6700_3.20_150 is known; near it are"),
+    ],
+)
+def test_an_arm_that_is_not_driven_says_why(kind: str, why: str) -> None:
+    (found,) = made(one_robot(kind=kind)).robots
+    assert found.robot is None
+    assert any(why in lack for lack in found.lacks)

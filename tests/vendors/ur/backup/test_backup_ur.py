@@ -369,3 +369,19 @@ def test_damaged_installations_do_no_harm(
     backup = opened(folder)
     assert [task.name for task in backup.tasks] == ["job"]
     assert len(flyby.read(folder).moves) == 2
+
+
+@pytest.mark.parametrize(
+    ("data", "why"),
+    [(b"", "is empty"), (bytes(range(64)) * 4, "is neither a program's tree nor a script")],
+)
+def test_files_that_hold_no_program_are_named(
+    build: Build, tmp_path: Path, data: bytes, why: str
+) -> None:
+    (tmp_path / "job.urp").write_bytes(data)
+    with pytest.raises(InputError, match=why):
+        opened(tmp_path)
+    build.packed(tmp_path / "other.urp", build.program(move(build)))
+    backup = opened(tmp_path)
+    assert any(f"job.urp: {why}" in note.message for note in backup.notes)
+    assert [task.name for task in backup.tasks] == ["other"]
