@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
+from ..tasks.pages.file import check_page, write_page
 from ..tasks.station.station import StationOptions, station_with
 from .output.console import fail, print_json, print_rich, print_table, progress, warn
-from .parameters import AsJson, Force, with_options
+from .parameters import AsJson, Force, PageFile, with_options
 
 if TYPE_CHECKING:
     from ..tasks.results.stations import DrivenStation
@@ -27,6 +28,7 @@ def station(
         Path | None,
         typer.Option("--plot", help="Draw moves, waits and signals over time: PNG, PDF or SVG."),
     ] = None,
+    report: PageFile = None,
     json: AsJson = False,
     force: Force = False,
 ) -> None:
@@ -38,16 +40,20 @@ def station(
     if plot is not None:
         picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, [file], replace_existing=force)
+    check_page(report, [file], force)
     with progress("reading the station") as say:
         made = station_with(file, replace(options, report=say))
         if plot is not None:
             write_all("--plot", {plot: made.picture(picture_kind(plot, "--plot"))})
+        written = write_page(report, made)
     if json:
         print_json(made.as_json())
     else:
         _tell(made)
         if plot is not None:
             print_rich(f"wrote {plot}")
+        for path in written:
+            print_rich(f"wrote {path}")
     if made.deadlock is not None or not made.clear:
         raise typer.Exit(1)
 

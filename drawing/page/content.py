@@ -188,6 +188,40 @@ class PageFront:
 
 
 @dataclass(frozen=True)
+class PageBar:
+    """A stretch of time in a row of a chart.
+
+    Args:
+        kind: ``move``, ``wait``, ``meeting``, ``device`` or ``on``.
+        begin, end: s.
+        text: what it is.
+        source, line: where it stands; -1 and 0 for nowhere.
+    """
+
+    kind: str
+    begin: float
+    end: float
+    text: str = ""
+    source: int = -1
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class PageBars:
+    """A row of a chart over time (Gantt chart).
+
+    Args:
+        name: of the robot or signal.
+        bars: in their order.
+        track: index of the robot's track; -1 for a signal.
+    """
+
+    name: str
+    bars: Sequence[PageBar]
+    track: int = -1
+
+
+@dataclass(frozen=True)
 class Page:
     """All of a page.
 
@@ -203,6 +237,7 @@ class Page:
         charts: plots, by their order.
         coat: paint.
         front: to pick from.
+        gantt: who does what when, a row each, where several robots share one clock.
         together: times at which tracks pass the same waypoint, s, a row a waypoint and a column a
             track; None where tracks run by the clock alone.
         notes: sentences that the reader should not miss.
@@ -220,6 +255,7 @@ class Page:
     charts: Sequence[PageChart] = ()
     coat: PageCoat | None = None
     front: PageFront | None = None
+    gantt: Sequence[PageBars] = ()
     together: Quantised | None = None
     notes: Sequence[str] = ()
     made_by: str = ""

@@ -17,7 +17,7 @@ from .track_content import (
     PageChart,
 )
 
-SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH = (
+SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH, APART = (
     "speed",
     "position",
     "velocity",
@@ -26,6 +26,7 @@ SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH = (
     "clearance",
     "energy",
     "push",
+    "apart",
 )
 CHARTS = (
     PageChart(SPEED, "TCP speed", "mm/s"),

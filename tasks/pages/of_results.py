@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 BUILDERS = {
     "Comparison": "comparison_page",
+    "DrivenStation": "station_page",
     "Findings": "findings_page",
     "IdentifiedModel": "identified_page",
     "PaintedPart": "painted_page",

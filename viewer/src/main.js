@@ -12,7 +12,7 @@ import { Overlay } from "./overlay.js";
 import { PlotPane } from "./plots.js";
 import { SceneView } from "./scene.js";
 import { Session } from "./session.js";
-import { SourcePane } from "./source.js";
+import { sourcePanes } from "./source.js";
 import { splitter } from "./split.js";
 import { TablePane } from "./tables.js";
 import { Transport } from "./transport.js";
@@ -35,6 +35,7 @@ function layout(session) {
   const side = h("div", { class: "side" }, areas.source, splitter("--tables", "horizontal", (e) => window.innerHeight - e.clientY), areas.tables);
   const main = h("div", { class: "main" }, areas.scene, areas.transport, splitter("--plots", "horizontal", (e) => window.innerHeight - e.clientY), areas.plots);
   const root = h("div", { class: "page" }, areas.top, main, splitter("--side", "vertical", (e) => window.innerWidth - e.clientX), side);
+  if (session.page.gantt?.length) root.classList.add("several");
   if (!(session.page.sources ?? []).length && !session.tracks.length) root.classList.add("plain");
   return { root, ...areas };
 }
@@ -70,7 +71,7 @@ function start(page) {
   notices(session, parts.scene);
   const transport = new Transport(session, parts.transport);
   const plots = new PlotPane(session, parts.plots);
-  const source = new SourcePane(session, parts.source);
+  const source = sourcePanes(session, parts.source);
   const drawings = [
     ...(page.front ? [frontDrawing(session)] : []),
     ...(page.coat ? [coatDrawing(page.coat)] : []),

@@ -153,7 +153,7 @@ export class Overlay {
     const move = track.moves[track.moveAt(t)];
     const speed = track.channel("speed");
     const limit = track.data.limits?.names[track.limitAt(t)];
-    const rest = track.flags.find((flag) => flag.duration > 0 && flag.t <= t + 1e-6 && t < flag.t + flag.duration);
+    const rest = track.restAt(t);
     const rows = [];
     if (move) rows.push(["move", `${move.number}${move.line ? ` · line ${move.line}` : ""}`], ["", move.label]);
     if (speed) rows.push(["TCP", `${number(track.value(speed, t), 0)} mm/s`]);

@@ -3,8 +3,10 @@
 import uPlot from "uplot";
 import { KINDS, NAMED, REST, kindOf } from "./colours.js";
 import { h, number } from "./dom.js";
+import { Gantt } from "./gantt.js";
 
 const LEFT = 54;
+const LEFT_OF_ROWS = 112; // where rows have names
 const RIGHT = 14;
 const GAP = 1e-9;
 const FAR = 3; // programmed by driven speed, from which on only what is driven scales a plot
@@ -16,19 +18,26 @@ export class PlotPane {
     this.charts = (session.page.charts ?? []).filter((chart) =>
       session.tracks.some((track) => track.channels.some((channel) => channel.chart === chart.key)),
     );
+    this.gantt = session.page.gantt?.length ? new Gantt(session, session.page.gantt) : null;
+    this.left = this.gantt ? LEFT_OF_ROWS : LEFT;
     this.colours = { text: "#444", line: "#ddd" };
     this.bandHost = h("div", { class: "band" });
-    this.band = h("canvas", { "aria-label": "what limits the robot over time" });
+    this.band = h("canvas", { "aria-label": this.gantt ? "who does what over time" : "what limits the robot over time" });
     this.legend = h("div", { class: "legend" });
     this.head = h("i", { class: "playhead" });
     this.bandHost.append(this.band, this.head);
+    if (this.gantt) this.bandHost.style.height = `${this.gantt.height}px`;
     this.plots = [];
     host.append(h("div", { class: "bandrow" }, this.legend, this.bandHost));
     if (this.charts.length) {
       this.slots = [this.slot(0), this.slot(Math.min(2, this.charts.length - 1))];
-      if (this.charts.length < 2) this.slots.pop().root.remove();
+      if (this.charts.length < 2 || this.gantt) this.slots.pop().root.remove();
     } else this.slots = [];
-    this.band.addEventListener("click", (event) => session.seek(this.timeAt(event.offsetX)));
+    this.band.addEventListener("click", (event) => {
+      const t = this.timeAt(event.offsetX);
+      if (this.gantt) this.gantt.clicked(t, event.offsetY, this.secondsAPixel());
+      else session.seek(t);
+    });
     this.band.addEventListener("mousemove", (event) => this.tell(event));
     session.on("time", () => this.cursor());
     session.on("track", () => this.rebuild());
@@ -76,7 +85,7 @@ export class PlotPane {
       const channels = track.channels.filter((channel) => channel.chart === chart.key);
       channels.forEach((channel, k) => {
         const joint = channel.axis ?? null;
-        if (!own && (channel.stepped || joint !== null)) return;
+        if (!own && (channel.stepped || joint !== null || chart.key === "apart")) return; // of two robots once
         found.push({ track, channel, own, name: own ? channel.name : `${channel.name}, ${track.name}`, colour: colourOf(channel, joint, k, own) });
       });
     }
@@ -118,7 +127,7 @@ export class PlotPane {
         x: { time: false, range: () => this.session.view ?? [0, Math.max(this.session.duration, 1e-3)] },
         y: { range: (u, low, high) => ranged(low, high, limit) },
       },
-      axes: [this.axis({ size: slot === this.slots.at(-1) ? 22 : 4, values: (u, at) => at.map((v) => (slot === this.slots.at(-1) ? `${+v.toFixed(3)} s` : "")) }), this.axis({ size: LEFT, space: 24 })],
+      axes: [this.axis({ size: slot === this.slots.at(-1) ? 22 : 4, values: (u, at) => at.map((v) => (slot === this.slots.at(-1) ? `${+v.toFixed(3)} s` : "")) }), this.axis({ size: this.left, space: 24 })],
       series: [{}, ...series],
       hooks: {
         draw: [(u) => this.overlay(u, limit)],
@@ -226,8 +235,8 @@ export class PlotPane {
   }
 
   putBandHead() {
-    const x = this.placeOf(this.session.timeOf(this.session.track));
-    this.head.hidden = !(x >= LEFT - 1 && x <= this.bandHost.clientWidth - RIGHT + 1);
+    const x = this.placeOf(this.gantt ? this.session.t : this.session.timeOf(this.session.track));
+    this.head.hidden = !(x >= this.left - 1 && x <= this.bandHost.clientWidth - RIGHT + 1);
     this.head.style.transform = `translateX(${x}px)`;
   }
 
@@ -254,13 +263,18 @@ export class PlotPane {
 
   timeAt(x) {
     const [from, to] = this.span();
-    const width = this.band.clientWidth - LEFT - RIGHT;
-    return Math.min(Math.max(from + ((x - LEFT) / width) * (to - from), 0), this.session.duration);
+    const width = this.band.clientWidth - this.left - RIGHT;
+    return Math.min(Math.max(from + ((x - this.left) / width) * (to - from), 0), this.session.duration);
   }
 
   placeOf(t) {
     const [from, to] = this.span();
-    return LEFT + ((t - from) / (to - from)) * (this.band.clientWidth - LEFT - RIGHT);
+    return this.left + ((t - from) / (to - from)) * (this.band.clientWidth - this.left - RIGHT);
+  }
+
+  secondsAPixel() {
+    const [from, to] = this.span();
+    return (to - from) / (this.band.clientWidth - this.left - RIGHT);
   }
 
   drawBand() {
@@ -278,11 +292,17 @@ export class PlotPane {
     const ctx = this.band.getContext("2d");
     ctx.setTransform(scale, 0, 0, scale, 0, 0);
     ctx.clearRect(0, 0, width, height);
+    if (this.gantt) {
+      this.gantt.draw(ctx, { x: (t) => this.placeOf(t), left: this.left, right: width - RIGHT, ...this.colours });
+      this.putBandHead();
+      if (!this.legend.childElementCount) this.legend.replaceChildren(...this.gantt.legend());
+      return;
+    }
     const top = 12;
     const bottom = height - 2;
     ctx.save();
     ctx.beginPath();
-    ctx.rect(LEFT, 0, width - LEFT - RIGHT, height);
+    ctx.rect(this.left, 0, width - this.left - RIGHT, height);
     ctx.clip();
     ctx.fillStyle = REST.colour;
     ctx.fillRect(this.placeOf(0), top, this.placeOf(track.duration) - this.placeOf(0), bottom - top);
@@ -354,6 +374,10 @@ export class PlotPane {
     const { track } = this.session;
     if (!track) return;
     const t = this.timeAt(event.offsetX);
+    if (this.gantt) {
+      this.band.title = this.gantt.told(t, event.offsetY, this.secondsAPixel());
+      return;
+    }
     const move = track.moves[track.moveAt(t)];
     const name = track.data.limits?.names[track.limitAt(t)] ?? "standing still";
     const what = move ? `move ${move.number}${move.line ? `, line ${move.line}` : ""}: ` : "";

@@ -4,25 +4,67 @@ import { h, seconds } from "./dom.js";
 
 const BLOCK = 200; // lines that the browser lays out together
 
+/** The active track's source; where several robots share one clock that of another one below it. */
+export function sourcePanes(session, host) {
+  const first = new SourcePane(session, host);
+  if (session.page.gantt?.length && session.tracks.length > 1) new SourcePane(session, host, new Beside(session));
+  return first;
+}
+
+/** Another robot than the active one: the next, or who was chosen. */
+class Beside {
+  constructor(session) {
+    this.session = session;
+    this.chosen = null;
+  }
+
+  get index() {
+    const { active, tracks } = this.session;
+    if (this.chosen !== null && this.chosen !== active) return this.chosen;
+    return (active + 1) % tracks.length;
+  }
+
+  list(pane) {
+    const { session } = this;
+    if (session.tracks.length < 3) return null;
+    const choose = h("select", { "aria-label": "which other robot", onchange: () => {
+      this.chosen = +choose.value;
+      pane.fill();
+    } });
+    session.tracks.forEach((track, k) => choose.append(h("option", { value: k }, track.name)));
+    return choose;
+  }
+}
+
 export class SourcePane {
-  constructor(session, host) {
-    Object.assign(this, { session, host });
+  constructor(session, host, beside = null) {
+    Object.assign(this, { session, host, beside });
     this.sources = session.page.sources ?? [];
     this.chosen = 0;
     this.files = h("select", { "aria-label": "source file", onchange: () => this.open(+this.files.value) });
     this.note = h("span", { class: "quiet" });
     this.text = h("div", { class: "code", tabindex: "0", role: "listbox", "aria-label": "source text" });
     this.text.addEventListener("click", (event) => this.clicked(event));
-    host.append(h("div", { class: "bar" }, this.files, this.note), this.text);
+    this.robots = beside?.list(this) ?? null;
+    host.append(h("div", { class: "bar" }, this.robots ?? "", this.files, this.note), this.text);
     session.on("track", () => this.fill());
     session.on("time", () => this.mark());
     session.on("line", () => this.follow(this.session.line));
     this.fill();
   }
 
-  /** The files of the active track. */
+  get index() {
+    return this.beside?.index ?? this.session.active;
+  }
+
+  get track() {
+    return this.session.tracks[this.index];
+  }
+
+  /** The files of the track. */
   fill() {
-    const { active } = this.session;
+    const active = this.index;
+    if (this.robots) this.robots.value = String(active);
     this.shown = this.sources
       .map((source, index) => ({ ...source, index }))
       .filter((source) => (source.track ?? 0) === active);
@@ -44,7 +86,8 @@ export class SourcePane {
       this.note.textContent = "";
       return;
     }
-    this.note.textContent = this.shown.length < 2 ? source.name : "";
+    const robot = this.session.page.gantt?.length ? `${this.track.name}: ` : "";
+    this.note.textContent = this.shown.length < 2 ? `${robot}${source.name}` : robot;
     const spent = this.spent(source.index);
     const most = Math.max(0, ...[...spent.values()].map((one) => one.time));
     const rows = source.text.split("\n");
@@ -66,7 +109,7 @@ export class SourcePane {
   /** Time and number of passes of each line of a file. */
   spent(index) {
     const found = new Map();
-    for (const move of this.session.track?.moves ?? []) {
+    for (const move of this.track?.moves ?? []) {
       if ((move.source ?? -1) !== index || !move.line) continue;
       const one = found.get(move.line) ?? { time: 0, passes: 0, fault: false };
       one.fault ||= move.fault ?? false;
@@ -103,6 +146,7 @@ export class SourcePane {
     const row = event.target.closest(".line");
     if (!row || String(window.getSelection())) return;
     const line = +row.dataset.line;
+    if (this.index !== this.session.active) this.session.choose(this.index);
     this.session.goLine(this.shown[this.chosen].index, line);
     this.select(line);
   }
@@ -124,10 +168,11 @@ export class SourcePane {
 
   /** Mark the line that is driven now. */
   mark() {
-    const { session } = this;
-    const { track } = session;
+    const { session, track } = this;
     if (!track) return;
-    const move = track.moves[track.moveAt(session.timeOf(track))];
+    const t = session.timeOf(track);
+    const rest = track.restAt(t);
+    const move = rest?.line ? rest : track.moves[track.moveAt(t)];
     const key = move?.line ? `${move.source ?? -1}:${move.line}` : "";
     if (key === this.marked) return;
     this.marked = key;

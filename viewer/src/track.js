@@ -90,6 +90,11 @@ export class Track {
     return this.driven[before(this.begins, time + 1e-6)];
   }
 
+  /** The wait that it stands in; undefined while it drives. */
+  restAt(time) {
+    return this.flags.find((flag) => flag.duration > 0 && flag.t <= time + 1e-6 && time < flag.t + flag.duration);
+  }
+
   toolAt(time) {
     const move = this.moves[this.moveAt(time)];
     return this.tools[move ? move.tool ?? 0 : this.data.tool ?? 0] ?? this.tools[0];

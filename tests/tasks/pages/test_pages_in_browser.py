@@ -132,6 +132,53 @@ def test_paint(opened: Opened, folder: Path) -> None:
     ) == pytest.approx(0.0, abs=2e-4)
 
 
+def test_a_station_runs_on_one_clock(opened: Opened) -> None:
+    made = flyby.station(ROOT / "examples/two_robots/station.toml")
+    view = opened(page_bytes(made))
+    assert view.evaluate("flyby.view.arms.map((arm) => arm.ghost)") == [False, False]
+    assert view.evaluate("flyby.session.duration") == pytest.approx(made.duration, abs=2e-3)
+    schedules = made.run.schedules
+    # Both stand where their schedules say, while the one waits and when it goes on.
+    for t in (1.0, 2.5, 4.0, 6.5):
+        for k, (name, member) in enumerate(made.station.members.items()):
+            own = np.clip(schedules[name].own(np.array([t])), 0.0, member.run.duration)
+            path = member.run.trajectory
+            q = [np.interp(own[0], path.t, column) for column in path.q.T]
+            drawn = view.evaluate("([k, t]) => flyby.session.tracks[k].joints(t)", [k, t])
+            np.testing.assert_allclose(drawn, q, atol=3e-4)
+    (pair,) = made.clearances
+    curve = "flyby.session.tracks[0].channel('apart')"
+    least = view.evaluate(f"flyby.session.tracks[0].value({curve}, {pair.least_at})")
+    assert least == pytest.approx(1e3 * pair.least, abs=10.0)
+    # A click on a bar goes to its time, its robot and its line; both sources are there.
+    (spell,) = schedules["right"].waits
+    x, y = view.evaluate("(t) => [flyby.plots.placeOf(t), 2 + 15 * 1.5]", 1.0)
+    view.locator(".band canvas").click(position={"x": x, "y": y})
+    assert view.evaluate("flyby.session.t") == pytest.approx(1.0, abs=0.02)
+    assert view.evaluate("flyby.session.track.name") == "right"
+    picked = view.locator(".line.picked").first
+    assert picked.get_attribute("data-line") == str(spell.action.span.line)
+    shown = view.locator(".source .bar").all_inner_texts()
+    assert [text.split(":")[0] for text in shown] == ["right", "left"]
+    assert view.locator(".line.now").first.get_attribute("data-line") == str(spell.action.span.line)
+
+
+def test_a_station_that_never_ends_says_so(opened: Opened, folder: Path) -> None:
+    for name in ("left", "right"):
+        for suffix in (".toml", ".mod"):
+            text = (ROOT / f"examples/two_robots/{name}{suffix}").read_text("utf-8")
+            (folder / f"{name}{suffix}").write_text(
+                text.replace("SetDO doLeft, 1;", "SetDO doLeft, 0;"), "utf-8"
+            )
+    text = (ROOT / "examples/two_robots/station.toml").read_text("utf-8")
+    (folder / "station.toml").write_text(text, "utf-8")
+    made = flyby.station(folder / "station.toml", no_proof=True)
+    assert made.deadlock is not None
+    view = opened(page_bytes(made))
+    assert "never ends" in view.locator(".top").inner_text()
+    assert view.locator(".notices li").count() == len(made.findings())
+
+
 def test_points_of_a_front_are_picked(opened: Opened) -> None:
     program = flyby.read(SQUARE, robot=ROBOT)
     view = opened(page_bytes(flyby.pareto(program, points=2)))

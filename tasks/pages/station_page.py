@@ -1,0 +1,306 @@
+"""The page of several robots on one clock: who is where when, who waits for whom, how near."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from ...core.arrays import FloatArray, IntArray
+from ...core.driving.driven_program import DrivenProgram
+from ...core.errors import Span
+from ...core.program.signal import Meet
+from ...core.station.clearances import StationProver
+from ...core.station.clock import Schedule, Spell
+from ...drawing.page.content import (
+    Page,
+    PageBar,
+    PageBars,
+    PageCell,
+    PageColumn,
+    PageRow,
+    PageShare,
+    PageTable,
+)
+from ...drawing.page.curves import APART, CHARTS
+from ...drawing.page.packing import Quantised
+from ...drawing.page.retiming import OtherClock, on_clock
+from ...drawing.page.track_content import PageChannel, PageChart, PageFlag, PageTrack
+from ...drawing.signals import signals_on
+from ..results.runs import Run
+from ..results.stations import DrivenStation
+from .program_tables import time_tables
+from .run_page import PageDraft, made_by
+
+MOST_TIMES, EVERY = 300, 0.05
+"""Times at which distances between robots are looked at, and s between them at least."""
+_ROBOTS = (
+    PageColumn("robot"),
+    PageColumn("moves"),
+    PageColumn("begins", "s", 3),
+    PageColumn("ends", "s", 3),
+    PageColumn("drives", "s", 3, bar=True),
+    PageColumn("waits", "s", 3, bar=True),
+    PageColumn("slack", "s", 3),
+)
+_WAITS = (
+    PageColumn("robot"),
+    PageColumn("from", "s", 3),
+    PageColumn("for", "s", 3, bar=True),
+    PageColumn("statement"),
+    PageColumn("line"),
+)
+_SAVINGS = (
+    PageColumn("station quicker", "s", 3, bar=True),
+    PageColumn("robot"),
+    PageColumn("statement"),
+    PageColumn("line"),
+    PageColumn("proven"),
+)
+
+
+def station_page(made: DrivenStation) -> Page:
+    """The page of a station."""
+    return _StationPage(made).page()
+
+
+class _StationPage:
+    def __init__(self, made: DrivenStation) -> None:
+        self.made = made
+        self.draft = PageDraft()
+        self.last = _until(made)
+        self.clocks: list[OtherClock] = []
+        self.runs: list[Run] = []
+
+    def page(self) -> Page:
+        made, draft = self.made, self.draft
+        grid = np.linspace(0.0, self.last, int(np.clip(self.last / EVERY, 2, MOST_TIMES)))
+        for name, member in made.station.members.items():
+            robot = member.run.path.route.robot
+            run = Run.of(DrivenProgram.faultless(member.run), robot)
+            draft.drive([run], member.cell, [name], ghosts=0)
+            schedule = made.run.schedules[name]
+            clock = _clock(schedule, run.duration, self.last)
+            index = len(draft.tracks) - 1
+            spans = [spell.action.span for spell in schedule.waits]
+            draft.sources.add(run.program, index, spans)
+            track = on_clock(draft.tracks[-1], clock, grid)
+            waits = [self._flag(index, spell) for spell in schedule.waits if self._seen(spell)]
+            flags = sorted([*track.flags, *waits], key=lambda flag: flag.t)
+            draft.tracks[-1] = replace(track, flags=flags)
+            self.clocks.append(clock)
+            self.runs.append(run)
+        if made.clearances:
+            self._distances(grid)
+        charts = [PageChart(APART, "Distance between robots", "mm"), *CHARTS]
+        return Page(
+            "station" if made.station.file is None else made.station.file.parent.name,
+            "station",
+            self._facts(),
+            self._shares(),
+            draft.arms,
+            draft.tracks,
+            draft.files(),
+            list(self._tables()),
+            charts if made.clearances else CHARTS,
+            gantt=[*self._robots(), *self._signals()],
+            notes=made.findings(),
+            made_by=made_by(),
+        )
+
+    # Times
+
+    def _seen(self, spell: Spell) -> bool:
+        return min(spell.end, self.last) - spell.begin > 1e-3
+
+    def _flag(self, track: int, spell: Spell) -> PageFlag:
+        source, line = self.draft.sources.place(track, spell.action.span)
+        end = min(spell.end, self.last)
+        return PageFlag("wait", _waits_for(spell), spell.begin, end - spell.begin, source, line)
+
+    def _distances(self, grid: FloatArray) -> None:
+        """Curves of the distance of each two robots, on the tracks of both."""
+        made, tracks = self.made, self.draft.tracks
+        prover = StationProver(made.station, made.actions)
+        names = list(made.station.members)
+        rows = [self._standing(k, grid) for k in range(len(names))]
+        for a, b in combinations(range(len(names)), 2):
+            pair = prover.prover(names[a], names[b])
+            least = np.array(
+                [
+                    pair.nearest(
+                        rows[a][0][k : k + 1],
+                        rows[b][0][k : k + 1],
+                        (rows[a][1][k : k + 1], rows[b][1][k : k + 1]),
+                    )[0]
+                    for k in range(len(grid))
+                ]
+            )
+            for own, other in ((a, b), (b, a)):
+                values = 1e3 * np.interp(tracks[own].motion.t.values, grid, least)
+                curve = PageChannel(f"to {names[other]}", APART, Quantised(values, 0.1))
+                tracks[own] = replace(tracks[own], channels=[*tracks[own].channels, curve])
+
+    def _standing(self, k: int, grid: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Configurations and moves of a robot at times of the station."""
+        trajectory = self.runs[k].trajectory
+        own = np.clip(self.clocks[k].own(grid), 0.0, trajectory.t[-1])
+        row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
+        q = np.stack([np.interp(own, trajectory.t, column) for column in trajectory.q.T], -1)
+        return q, trajectory.move[row]
+
+    # Figures at the top
+
+    def _facts(self) -> dict[str, str]:
+        made = self.made
+        ends = np.isfinite(made.duration)
+        facts = {"station time": f"{made.duration:.3f} s" if ends else "never ends"}
+        if ends:
+            facts["ends last"] = made.bottleneck
+        for pair in made.clearances:
+            kept = "proven in time" if pair.in_time.proven else "not proven"
+            near = f"{1e3 * pair.least:.1f} mm" if pair.least > 0.0 else "touch"
+            facts[" – ".join(pair.robots)] = f"{near}, {kept}"
+        return facts
+
+    def _shares(self) -> Sequence[PageShare]:
+        """What the time of the robot that ends last goes into."""
+        made = self.made
+        schedule = made.run.schedules[made.bottleneck]
+        waits = sum(min(s.end, self.last) - s.begin for s in schedule.waits)
+        drives = made.station.members[made.bottleneck].run.duration
+        parts = {f"{made.bottleneck} drives": drives, "waits": float(waits)}
+        return [PageShare(name, seconds) for name, seconds in parts.items() if seconds > 0.0]
+
+    # Rows over time
+
+    def _robots(self) -> Iterator[PageBars]:
+        for index, name in enumerate(self.made.station.members):
+            track = self.draft.tracks[index]
+            yield PageBars(name, list(self._bars(index, track)), index)
+
+    def _bars(self, index: int, track: PageTrack) -> Iterator[PageBar]:
+        schedule = list(self.made.run.schedules.values())[index]
+        clock = self.clocks[index]
+        for move, said in zip(self.runs[index].report.moves, track.moves, strict=True):
+            if move.driven:
+                ends = np.array([move.begin, move.begin + move.time + move.settling])
+                begin, end = float(clock.begins(ends[:1])[0]), float(clock.first(ends[1:])[0])
+                if begin < self.last:
+                    text = f"move {said.number}: {said.label}"
+                    yield PageBar("move", begin, end, text, said.source, said.line)
+        for flag in track.flags:
+            if flag.duration > 0.0 and flag.t < self.last:
+                kind = "device" if flag.kind == "device" else "dwell"
+                if any(abs(spell.begin - flag.t) < 1e-9 for spell in schedule.waits):
+                    continue
+                end = flag.t + flag.duration
+                yield PageBar(kind, flag.t, end, flag.text, flag.source, flag.line)
+        for spell in schedule.waits:
+            if self._seen(spell):
+                source, line = self.draft.sources.place(index, spell.action.span)
+                kind = "meeting" if isinstance(spell.action.does, Meet) else "wait"
+                end = min(spell.end, self.last)
+                yield PageBar(kind, spell.begin, end, _waits_for(spell), source, line)
+
+    def _signals(self) -> Iterator[PageBars]:
+        made = self.made
+        for name, spans in signals_on(made.station, made.run, made.actions, self.last).items():
+            yield PageBars(name, [PageBar("on", begin, end, f"{name} on") for begin, end in spans])
+
+    # Tables
+
+    def _tables(self) -> Iterator[PageTable]:
+        made = self.made
+        names = list(made.station.members)
+        yield PageTable("Robots", _ROBOTS, list(self._robot_rows()))
+        rows = []
+        for name, spell in made.waits():
+            index = names.index(name)
+            source, line = self.draft.sources.place(index, spell.action.span)
+            length = min(spell.end, self.last) - spell.begin
+            level = "error" if not np.isfinite(spell.end) else ""
+            cells = (name, spell.begin, length, _waits_for(spell), _where(spell.action.span))
+            rows.append(PageRow(cells, level, index, spell.begin, None, source, line))
+        if rows:
+            yield PageTable("Waits", _WAITS, rows)
+        if made.clearances:
+            yield self._pairs(names)
+        if made.savings:
+            saved = []
+            for saving, told in zip(made.savings, made.saving_rows(), strict=True):
+                index = names.index(saving.robot)
+                source, line = self.draft.sources.place(index, saving.action.span)
+                changed: list[PageCell] = [saving.seconds, *told[:4]]
+                saved.append(PageRow(changed, "", index, None, None, source, line))
+            note = "What could go or come earlier; the station is as much quicker."
+            yield PageTable("Interlocks", _SAVINGS, saved, note)
+        last = names.index(made.bottleneck)
+        for table in time_tables(self.runs[last], self.draft.sources, last):
+            moved = [
+                row if row.t is None else replace(row, t=self.clocks[last].last_at(row.t))
+                for row in table.rows
+            ]
+            title = f"{table.title} of {made.bottleneck}"
+            yield replace(table, title=title, rows=moved)
+        findings = [PageRow((text,), "error") for text in made.findings()]
+        findings += [PageRow((str(note),), "warning") for note in made.notes]
+        if findings:
+            yield PageTable("Notes", [PageColumn("what")], findings)
+
+    def _robot_rows(self) -> Iterator[PageRow]:
+        made = self.made
+        for index, (name, schedule) in enumerate(made.run.schedules.items()):
+            waits = sum(min(s.end, self.last) - s.begin for s in schedule.waits)
+            ends = np.isfinite(schedule.end)
+            slack = made.duration - schedule.end if np.isfinite(made.duration) else None
+            cells = (
+                name,
+                float(len(made.station.members[name].program.moves)),
+                schedule.begin,
+                schedule.end if ends else None,
+                made.station.members[name].run.duration,
+                float(waits) or None,
+                slack,
+            )
+            yield PageRow(cells, "" if ends else "error", index, schedule.begin)
+
+    def _pairs(self, names: list[str]) -> PageTable:
+        columns = [
+            PageColumn("robots"),
+            PageColumn("least met", "mm", 1),
+            PageColumn("at", "s", 3),
+            *(PageColumn(one) for one in ("in time", "at any time", "under interlocks")),
+        ]
+        rows = []
+        for pair, told in zip(self.made.clearances, self.made.pair_rows(), strict=True):
+            cells: list[PageCell] = [told[0], 1e3 * pair.least, pair.least_at, *told[2:]]
+            level = "" if pair.in_time.proven else "error"
+            rows.append(PageRow(cells, level, names.index(pair.robots[0]), pair.least_at))
+        return PageTable("Distances", columns, rows)
+
+
+def _until(made: DrivenStation) -> float:
+    """s, until when anything happens."""
+    if np.isfinite(made.duration):
+        return max(made.duration, 1e-3)
+    times = [s.end for s in made.run.schedules.values() if np.isfinite(s.end)]
+    times += [spell.begin for s in made.run.schedules.values() for spell in s.waits]
+    # A little of what lasts for ever.
+    return 1.05 * max([1.0, *times, *(change.time for change in made.run.changes)])
+
+
+def _clock(schedule: Schedule, duration: float, last: float) -> OtherClock:
+    at = [min(spell.action.time + schedule.lag, duration) for spell in schedule.waits]
+    length = [min(spell.end, last) - spell.begin for spell in schedule.waits]
+    return OtherClock(schedule.begin, np.array(at), np.array(length), schedule.lag)
+
+
+def _waits_for(spell: Spell) -> str:
+    return spell.action.text + (" (gave up)" if spell.given_up else "")
+
+
+def _where(span: Span | None) -> str:
+    return "" if span is None else f"{span.file}:{span.line}"
