@@ -23,6 +23,7 @@ import { columnMajor } from "./kinematics.js";
 import { CoatView } from "./coat.js";
 import { PathView } from "./path.js";
 import { bodyObject } from "./solids.js";
+import { Veils } from "./veils.js";
 
 export const VIEWS = {
   oblique: [1, -1.25, 0.8],
@@ -110,6 +111,7 @@ export class SceneView {
     this.controls.enableDamping = false;
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.touch());
+    this.veils = new Veils();
     this.coat = session.page.coat ? new CoatView(session.page.coat) : null;
     this.lights();
     new ResizeObserver(() => this.resize()).observe(host);
@@ -156,6 +158,15 @@ export class SceneView {
     this.grid();
     this.applyShow();
     this.pose();
+    this.veils.collect(this.root);
+  }
+
+  /** Points of the arms that shall be seen: their joints and tips. */
+  seen() {
+    return this.arms.flatMap((arm) => {
+      const links = arm.nodes.slice(1).map((node) => new Vector3().setFromMatrixPosition(node.matrix));
+      return [...links, new Vector3(...arm.track.tcp(this.session.timeOf(arm.track)))];
+    });
   }
 
   /** Where the active track's proof is tightest. */
@@ -306,6 +317,7 @@ export class SceneView {
     if (!this.dirty) return false;
     this.dirty = false;
     this.pose();
+    this.veils.lift(this.camera, this.seen());
     this.renderer.render(this.scene, this.camera);
     this.drawn += 1;
     this.onrender?.();

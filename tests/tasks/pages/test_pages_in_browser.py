@@ -132,6 +132,39 @@ def test_paint(opened: Opened, folder: Path) -> None:
     ) == pytest.approx(0.0, abs=2e-4)
 
 
+def test_a_fence_does_not_hide_the_robot(opened: Opened) -> None:
+    run = flyby.emulate(
+        flyby.read(
+            ROOT / "examples/kuka_archive",
+            entry="PRESS",
+            cell=ROOT / "examples/cell/press.toml",
+        )
+    )
+    view = opened(page_bytes(run))
+    opacity = """(place) => {
+      const { camera } = flyby.view;
+      camera.position.set(...place);
+      flyby.view.touch();
+      flyby.view.render();
+      const fence = flyby.view.veils.bodies.find(({ mesh }) => mesh.userData.body.name === "fence");
+      return fence.mesh.material.opacity;
+    }"""
+    before, behind = view.evaluate(opacity, [0.5, -6.0, 1.0]), view.evaluate(opacity, [0.5, 6.0, 1])
+    assert before < 0.15 < 0.4 < behind
+    assert "fence" in view.evaluate("flyby.overlay.named.map((one) => one.text)")
+
+
+def test_tabs_of_many_tables_are_all_seen(opened: Opened, changed: bytes) -> None:
+    for width in (1280, 1024):
+        view = opened(changed, viewport={"width": width, "height": 720})
+        cut = """() => [...document.querySelectorAll(".tabs button")].filter((tab) => {
+          const { left, right } = tab.getBoundingClientRect();
+          const room = tab.parentElement.getBoundingClientRect();
+          return left < room.left - 1 || right > room.right + 1;
+        }).map((tab) => tab.textContent)"""
+        assert view.locator(".tabs button").count() > 4 and view.evaluate(cut) == []
+
+
 def test_a_station_runs_on_one_clock(opened: Opened) -> None:
     made = flyby.station(ROOT / "examples/two_robots/station.toml")
     view = opened(page_bytes(made))
