@@ -14,7 +14,13 @@ from ..core.program.entry_point import ALL
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with
 from ..tasks.emulate import EmulateOptions, emulate_with
-from ..tasks.files.outputs import check_outputs, page_name, picture_kind, write_all
+from ..tasks.files.outputs import (
+    check_folder,
+    check_outputs,
+    page_name,
+    picture_kind,
+    write_all,
+)
 from ..tasks.pages.of_results import page_bytes
 from ..tasks.read import SourceOptions, read_with
 from .output.console import fail, print_json, print_rich, progress
@@ -80,7 +86,7 @@ def emulate(
         page_name(report, "--report")
     outputs = files.by_option()
     if write is not None and write.is_dir():
-        del outputs["--write"]
+        check_folder("--write", outputs.pop("--write"))
     inputs = [program, *source.inputs()]
     check_outputs(outputs, inputs, replace_existing=force)
     if source.entry == ALL:

@@ -54,6 +54,7 @@ def translate(
 ) -> None:
     """Carry a program to another robot: targets, zones and speeds in its vendor's terms."""
     check_folder("--out", out)
+    check_page(report, [program], force)
     if old is None and cell is None and find_backup(program, registry()) is None:
         vendor = registry().reader_of(program).name
         raise OptionError(
@@ -61,7 +62,7 @@ def translate(
             f"of {vendor}) or --cell: corners and times are taken from its motion"
         )
     source = text.for_robot(old, cell)
-    check_page(report, [program, *source.inputs()], force)
+    check_page(report, source.inputs(), force)
     if source.entry == ALL:
         if report is not None:
             raise OptionError("--report is of one program: name one entry, not all")

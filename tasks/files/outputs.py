@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -47,6 +48,7 @@ def check_outputs(
                 raise InputError(f"{option} {path}: is no regular file; name another")
             if not path.parent.is_dir() and (made is None or not path.is_relative_to(made)):
                 raise InputError(f"{option} {path}: there is no folder {path.parent}")
+            _try(path.parent)
         if there and not replace_existing:
             raise InputError(f"{option} {path}: exists already; {switched('force')} replaces it")
 
@@ -90,10 +92,11 @@ def check_folder(option: str, folder: Path | None) -> None:
     if folder is None:
         return
     with _asked(option, folder):
-        there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+        there = _nearest(folder)
         if not there.is_dir():
             which = "" if there == folder else f"{there} "
             raise InputError(f"{option} {folder}: {which}is no folder; name another")
+        _try(there)
 
 
 def write_in(
@@ -144,6 +147,22 @@ def write_all(option: str, files: Mapping[Path, bytes], made: Path | None = None
         raise InputError(f"{option} {error}") from None
     for note in notes:
         _log.warning(str(note))
+
+
+def _nearest(path: Path) -> Path:
+    """The path itself, or the nearest of the folders round it that is there."""
+    return next(one for one in (path, *path.absolute().parents) if one.exists())
+
+
+def _try(folder: Path) -> None:
+    """Write a file without a name, which says more than permissions do: disks are full, or mounted
+    to be read alone.
+
+    Raises:
+        OSError: nothing can be written there.
+    """
+    with tempfile.TemporaryFile(dir=_nearest(folder)):
+        pass
 
 
 @contextmanager

@@ -49,6 +49,9 @@ class FilePlaces:
         else:
             check_folder(spelt("out"), self.out)
         if self.out is None:
+            if self.in_place and self.inputs:
+                there = self.inputs[0]
+                check_folder(switched("in_place"), there if there.is_dir() else there.parent)
             return
         if self.in_place:
             raise OptionError(
