@@ -6,10 +6,10 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from uninstalled import tests_of, vendor_of  # noqa: E402
+import uninstalled
 
-FANUC = vendor_of("fanuc", "fanuc")
-_CONFORMANCE = tests_of("fanuc", "test_conformance")
+FANUC = uninstalled.vendor_of("fanuc", "fanuc")
+_CONFORMANCE = uninstalled.tests_of("fanuc", "test_conformance")
 
 
 class TestFanucConformance(_CONFORMANCE.TestFanuc):  # type: ignore[misc]

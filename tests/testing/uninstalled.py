@@ -35,5 +35,3 @@ def tests_of(example: str, file: str) -> Any:
     sys.modules[name] = module
     spec.loader.exec_module(module)
     return module
-
-

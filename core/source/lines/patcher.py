@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import fields
 from functools import partial
 
 from ...errors import InputError, Span
 from ...program.move import Move
 from ...program.origin import Ownership
 from ...program.program import Program
+from ...program.speed import Speed
+from ...program.zone import VendorZone
 from ..patch.edits import Edit, reading_of
 from ..patch.plan import PatchPlan, Wish, patch_program
 from ..patch.uses import MovePart, Use, UseKind
@@ -80,7 +83,7 @@ class _Literals:
         spans = use.origin.numbers
         old = self._numbers(use.kind, use.old, use.move)
         new = self._numbers(use.kind, use.new, use.move)
-        if len(spans) != len(new) or len(old) != len(new):
+        if len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
             return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
         texts = {
             span: self.text(span) if before == value else self._number(value)
@@ -92,6 +95,20 @@ class _Literals:
             for span, before, value in zip(spans, old, new, strict=True)
         )
         return Wish(texts, complete=not missing)
+
+
+def _same_words(use: Use) -> bool:
+    """Whether the numbers of a part mean the same as before: a share and no distance, mm/s and no
+    degrees/s."""
+    if isinstance(use.old, VendorZone) and isinstance(use.new, VendorZone):
+        return use.old.kind == use.new.kind
+    if isinstance(use.old, Speed) and isinstance(use.new, Speed):
+        return _stated(use.old) == _stated(use.new)
+    return True
+
+
+def _stated(speed: Speed) -> list[bool]:
+    return [getattr(speed, field.name) is not None for field in fields(speed)]
 
 
 def _in_place_of_point(literals: _Literals, use: Use) -> list[Edit]:

@@ -83,7 +83,9 @@ def _example(action: SignalAction) -> str:
     return "DO[?]" if isinstance(action.value, bool) else "AO[?]"
 
 
-_ROUTINE = re.compile(r"^/PROG[ \t]+(?P<name>[\w-]+)[^\r\n]*(?P<body>).*?^/END", re.M | re.S)
+_ROUTINE = re.compile(
+    r"^/PROG[ \t]+(?P<name>[\w-]+)[^\r\n]*(?P<body>)(?:(?!^/PROG).)*?^/END", re.M | re.S
+)
 _DATUM = re.compile(
     r"\b(?:P|PR|R|UFRAME|UTOOL|AR|SR)\[[^\[\],:]*|\b(?:UFRAME_NUM|UTOOL_NUM|OVERRIDE)"
 )

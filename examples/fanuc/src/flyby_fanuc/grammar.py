@@ -37,15 +37,14 @@ _SECTION = re.compile(
     r"^[ \t]*/(PROG|ATTR|APPL|MN|POS|END)\b[^\r\n]*", re.MULTILINE | re.IGNORECASE
 )
 _STATEMENT = re.compile(
-    r"^(?P<nested>[ ]{5,})?[ \t]*\d*[ \t]*:(?P<text>[ \t]*(?:!|//|--eg)[^\r\n]*"
-    r"|[^;\r\n]*(?:\r?\n[ \t]+:[^;\r\n]*)*;)",
+    r"^(?P<nested>[ ]{5,}+)?+[ \t]*+\d*+[ \t]*+:(?P<text>[ \t]*+(?:!|//|--eg)[^\r\n]*+|[^;\r\n]*+;)",
     re.MULTILINE,
 )
 _LINE = re.compile(r"[^\r\n]+")
-_POSITION = re.compile(r"P\[[^\]]*\]\s*\{.*?\}\s*;", re.DOTALL)
+_POSITION = re.compile(r"P\[[^\[\]\r\n]*+\]\s*+\{[^{}]*+\}\s*+;")
 _SILENT = (
     re.compile(r"(?<=\[)()(GP\d+:)|()(\r?\n[ \t]+:)"),
-    re.compile(r"(\[(?:[^\[\]:\r\n]|\[[^\[\]:]*\])+)(:[^\]\r\n]*)(?=\])"),
+    re.compile(r"(\[(?:[^\[\]:\r\n]|\[[^\[\]:]*\])+)(:[^\]\r\n]{0,80}+)(?=\])"),
 )
 """Groups of axes, continued lines, comments in brackets."""
 _GROUP = re.compile(r"GP1\s*:(?P<body>.*?)(?=GP\d|\}|$)", re.DOTALL | re.IGNORECASE)
@@ -54,6 +53,7 @@ _CONFIG = re.compile(r"CONFIG\s*:\s*'([NF])\s*([LR]\s+)?([UD])\s*([TB])\s*,([^']
 _COORDINATE = re.compile(r"\b([XYZWPRE]|J\d|E\d)\s*=\s*(-?\s*[\d.]+)\s*(mm|deg)", re.IGNORECASE)
 _THEN = re.compile(r"\s*,\s*(?=(?:JMP|CALL)\b)|\s*,\s*(?=[A-Z]+\[)|\s+(?=THEN\b)", re.IGNORECASE)
 _CONDITION_OF_OFFSET = ("OFFSET CONDITION", "TOOL_OFFSET CONDITION")
+_LONGEST = 400
 _WHOLE = ("PR", "UFRAME", "UTOOL")
 
 
@@ -126,6 +126,8 @@ class Grammar:
 
     def said(self, line: Line) -> Statement | None:
         """A statement without what stands round it."""
+        if line.end - line.start > _LONGEST:
+            raise ValueError(f"a statement has {_LONGEST} characters at most")
         text = line.source.text
         moved = MOTION.fullmatch(text, line.start, line.end)
         if moved is not None:

@@ -27,7 +27,7 @@ POINT = r"PR?\[(?:[^\[\]]|\[[^\[\]]*\])*\]"
 _AMOUNT = r"(?:[\d.]+|A?R\[[^\[\]]*\])"
 MOTION = re.compile(
     rf"(?P<kind>[JLCA])\s+(?P<point>{POINT})(?:\s+(?P<end>{POINT}))?\s+"
-    rf"(?:(?P<speed>{_AMOUNT})\s*(?P<unit>%|mm/sec|cm/min|inch/min|deg/sec|msec|sec)|max_speed)\s+"
+    rf"(?P<pace>(?P<speed>{_AMOUNT})\s*(?P<unit>%|mm/sec|cm/min|inch/min|deg/sec|msec|sec)|max_speed)\s+"
     rf"(?P<zone>FINE|CNT\s*(?P<cnt>{_AMOUNT})|CR\s*(?P<cr>[\d.]+)(?:\s*,\s*(?P<behind>[\d.]+))?)"
     r"(?P<options>(?:\s.*)?)",
     re.IGNORECASE | re.DOTALL,
@@ -96,8 +96,7 @@ def drive(line: Line, found: re.Match[str], arc: str = "") -> Drive:
     amounts = [found.span("speed")] if found["speed"] else []
     amounts += [options["acc"]] if "acc" in options else []
     speed = Operand(
-        source.span(*(found.span("speed") if found["speed"] else found.span("zone"))),
-        tuple(parse(source, *span) for span in amounts),
+        source.span(*found.span("pace")), tuple(parse(source, *span) for span in amounts)
     )
     sized = [name for name in ("cnt", "cr", "behind") if found[name]]
     zone = Operand(
@@ -129,7 +128,7 @@ def drive(line: Line, found: re.Match[str], arc: str = "") -> Drive:
             tool,
             frame,
             events=events,
-            via=PoseTarget(pose_of(via)),
+            via=PoseTarget(pose_of(via), (via.kind or Place()).configuration),
             orientation=ArcOrientation.FIXED_FRAME,
         )
 

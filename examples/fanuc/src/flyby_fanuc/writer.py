@@ -49,7 +49,9 @@ class TpOptions:
 def number(value: float) -> str:
     """Three decimals as controllers write them, more where these do not say it."""
     text = f"{value:.3f}"
-    return text if abs(float(text) - value) < 1e-10 else f"{value:.9f}"
+    if abs(float(text) - value) >= 1e-10:
+        return f"{value:.9f}"
+    return {"-0.000": "0.000", "-180.000": "180.000"}.get(text, text)
 
 
 def amount(value: float) -> str:
