@@ -22,6 +22,7 @@ from .checks.patching import PatchingChecks
 from .checks.planted import PlantedFaults
 from .checks.recording import RecordingChecks
 from .checks.sources import SourceChecks
+from .checks.translation import TranslationChecks
 from .checks.words import WordsChecks
 
 
@@ -36,6 +37,7 @@ class VendorConformance(
     PatchingChecks,
     RecordingChecks,
     EmulationChecks,
+    TranslationChecks,
     PlantedFaults,
 ):
     """All checks; ``name`` is the vendor's."""

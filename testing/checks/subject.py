@@ -256,7 +256,9 @@ class Subject:
             if getattr(self.vendor, part) is None:
                 pytest.skip(f"{self.name} has no {part}")
 
-    def read_back(self, sources: Sources, robot: Robot | None = None) -> Program:
+    def read_back(
+        self, sources: Sources, robot: Robot | None = None, vendor: Vendor | None = None
+    ) -> Program:
         """The program in ``sources``, read from files as a user would.
 
         Of an arm with an axis that slides no text says whether its values are mm or degrees: the
@@ -264,15 +266,22 @@ class Subject:
         """
         slides = robot is not None and any(j.kind is JointKind.PRISMATIC for j in robot.joints)
         texts = {file: text.encode() for file, text in sources.items()}
-        return self.read_bytes(texts, robot if slides else None)
+        return self.read_bytes(texts, robot if slides else None, vendor)
 
-    def read_bytes(self, sources: dict[str, bytes], robot: Robot | None = None) -> Program:
-        """The program in files of these bytes; the first that the reader takes is the main one."""
-        main = next(f for f in sources if f.lower().endswith(self.vendor.suffixes))
+    def read_bytes(
+        self, sources: dict[str, bytes], robot: Robot | None = None, vendor: Vendor | None = None
+    ) -> Program:
+        """The program in files of these bytes; the first that the reader takes is the main one.
+
+        Args:
+            vendor: that reads them; None for the one under test.
+        """
+        vendor = vendor or self.vendor
+        main = next(f for f in sources if f.lower().endswith(vendor.suffixes))
         with TemporaryDirectory() as folder:
             for file, data in sources.items():
                 (Path(folder) / file).write_bytes(data)
-            return self.vendor.read_file(Path(folder) / main, robot=robot)
+            return vendor.read_file(Path(folder) / main, robot=robot)
 
     def read_written(self, sources: Sources, robot: Robot) -> Program:
         """What the writer has written; that it cannot be read is a failure."""

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from ...core.dialect import Dialect, MoveWords
+from ...core.arrays import FloatArray
+from ...core.dialect import Dialect, MoveWords, Orientation
 from ...core.program.event import Event
 from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Statement
+from ...core.program.origin import Ownership
 from ...core.program.program import Program
 from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from ...core.program.speed import Speed
@@ -20,7 +24,7 @@ from ...core.program.target import PoseTarget
 from ...core.program.tool import WORLD, Tool, WorkObject
 from ...core.program.zone import FINE, Fine, Radius, Zone
 from ...core.robot.model import Robot
-from ...core.source.patch.edits import alike
+from ...core.source.patch.edits import alike, reading_of
 from ...core.spatial.pose import Pose
 from ..strategies import allowed, is_regular, joint_target
 from .golden import stated_speeds
@@ -42,6 +46,9 @@ VALUES: Mapping[str, Any] = {
     "duration": 2.5,
 }
 """Numbers of `Speed`, none of them a usual default."""
+_NEAR = 1e-4
+"""mm, degrees or a share by which literals and the numbers made of them may differ."""
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _SQUARE = 0.5**0.5
 _FRAME = WorkObject("table", Pose((0.2, -0.1, 0.3), (_SQUARE, 0.0, 0.0, _SQUARE)))
 _TOOL = Tool("gun", Pose((0.01, 0.02, 0.1), (_SQUARE, 0.0, _SQUARE, 0.0)))
@@ -152,12 +159,32 @@ class WordsChecks(Subject):
         again = self.read_written({**sources, main: "".join(lines)}, self._robot_of_words)
         self.check_same(self.read_written(sources, self._robot_of_words), again, sources)
 
+    def test_speeds_that_are_not_needed_may_be_left_out(self) -> None:
+        """What must be stated, since the language's own default would be taken, is needed."""
+        self.need("reader", "writer")
+        for kind in (MoveJ, MoveL, MoveC):
+            words = self.words_of(kind)
+            for name in sorted({"tcp", self.dialect.pace} & words.speeds - words.needs):
+                program = self._around(self._plain(kind))
+                sources = self.written(program, self._robot_of_words)
+                again = self.read_written(sources, self._robot_of_words)
+                (left,) = {getattr(Speed(), name)}
+                found = getattr(again.moves[1].speed, name)
+                assert alike(found, left), told(
+                    f"{self.name}: a {kind.__name__} without {name} is driven by a default",
+                    written=text_of(sources),
+                    read=f"{name} of {found}",
+                    look="MoveWords.needs: what must be stated",
+                )
+
     def test_golden_texts_stay_within_the_dialect(self) -> None:
         """What a text says, the dialect has words for: translations would not use them."""
         spoken = self.dialect
         for text in self.golden_texts:
-            for move in self.read_golden(text).moves:
-                for what in _beyond(spoken, move):
+            program = self.read_golden(text)
+            for move in program.moves:
+                unlike = _said_otherwise(spoken, move, literals_of(program, move))
+                for what in (*_beyond(spoken, move), *unlike):
                     raise AssertionError(
                         told(
                             f"{self.name}: the dialect has no words for {what}",
@@ -272,6 +299,50 @@ class WordsChecks(Subject):
             yield WaitSignal(Level(self._signal_name(wait), on))
 
 
+def literals_of(program: Program, move: Move) -> list[float]:
+    """The numbers that stand in the text for the move's target."""
+    origin = None if move.origin is None else move.origin.target
+    if origin is None or origin.ownership is Ownership.DERIVED:
+        return []
+    files = reading_of(program).files
+    spans = [span for span in origin.numbers if span is not None]
+    texts = [files[span.file].text[span.start : span.end] for span in spans]
+    return [float(text) for text in texts if _NUMBER.fullmatch(text)]
+
+
+def _said_otherwise(spoken: Dialect, move: Move, literals: Sequence[float]) -> Iterator[str]:
+    """What stands in the text in another unit or form than the dialect says."""
+    turned = move.orientation is ArcOrientation.FOLLOWS_ARC if isinstance(move, MoveC) else False
+    if not literals or not isinstance(move.target, PoseTarget) or (turned and spoken.rigid_arcs):
+        return
+    pose = move.target.pose
+    length, angle = (1.0, 1.0) if spoken.in_si else (1e3, 180.0 / np.pi)
+    if not _among([length * value for value in pose.position], literals):
+        yield f"lengths that are not in {'m' if spoken.in_si else 'mm'}"
+    forms = _turns(spoken.orientation, pose, angle)
+    if forms and not any(_among(form, literals) for form in forms):
+        yield f"rotations whose form is not {spoken.orientation}"
+
+
+def _turns(form: Orientation, pose: Pose, angle: float) -> list[FloatArray]:
+    """How numbers say a rotation; the two quaternions of one, and the rotation vectors."""
+    w, x, y, z = pose.quaternion
+    if form is Orientation.QUATERNION:
+        return [np.array([w, x, y, z]), -np.array([w, x, y, z])]
+    rotation = Rotation.from_quat([x, y, z, w])
+    if form is Orientation.ROTATION_VECTOR:
+        short = rotation.as_rotvec()
+        size = float(np.linalg.norm(short))
+        return [short, short * (1 - 2 * np.pi / size)] if size > 0 else [short]
+    if form is Orientation.EULER_ZYX:
+        return [angle * rotation.as_euler("ZYX")]
+    return []
+
+
+def _among(wanted: Sequence[float] | FloatArray, literals: Sequence[float]) -> bool:
+    return all(min(abs(one - other) for other in literals) < _NEAR for one in wanted)
+
+
 def a_zone(kind: type[Zone]) -> Zone:
     """A zone of a kind: of one that is a share 40 %, of one with a radius 13 mm."""
     return Radius(0.013) if kind is Radius else kind(0.4)  # type: ignore[call-arg]
@@ -316,6 +387,9 @@ def _beyond(spoken: Dialect, move: Move) -> Iterator[str]:
     for name, most in spoken.most.items():
         if (getattr(move.speed, name) or 0.0) > most:
             yield f"{name} of {getattr(move.speed, name)}, beyond the most ({most})"
+    labelled = getattr(move.target, "configuration", None) is not None
+    if labelled and not words.configurations:
+        yield f"a configuration of {kind}"
     if not spoken.work_objects and move.work_object != WORLD:
         yield "a frame of targets"
     if not spoken.external_axes and move.target.external:

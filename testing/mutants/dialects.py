@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
-from ...core.dialect import Dialect, MoveWords, Wording
+from ...core.dialect import Dialect, MoveWords, Orientation, Wording
 from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from ...core.program.speed import Speed
 from ...core.program.zone import ContourFraction
 from ...core.vendor import Vendor
 from ..checks.subject import Subject
-from .mutant import Mutant, is_searched, knows_signals, sets_outputs, speaks
+from .mutant import Mutant, has, is_searched, knows_signals, sets_outputs, speaks
 from .statements import GOLDEN, WORDS
 from .wrapping import Plant
 
@@ -116,6 +116,16 @@ def _wording(change: Callable[[Wording], Wording]) -> Plant:
     return _spoken(changed)
 
 
+def _paced_by_a_speed(suite: Subject) -> bool:
+    """Where shares pace joint moves, all of the speed is the default and may be left out."""
+    return speaks(suite) and getattr(suite.vendor.speaks, "pace", "") != "joint_fraction"
+
+
+def _other_orientation(spoken: Dialect) -> Dialect:
+    forms = list(Orientation)
+    return replace(spoken, orientation=forms[(forms.index(spoken.orientation) + 1) % len(forms)])
+
+
 MUTANTS = (
     Mutant(
         "all speeds said to have words",
@@ -155,6 +165,25 @@ MUTANTS = (
         _flag("stationary_tools", True),
         WORDS,
         _lacks("stationary_tools"),
+    ),
+    Mutant(
+        "no speed said to be needed",
+        _moves(lambda words: replace(words, needs=frozenset())),
+        ("test_speeds_that_are_not_needed_may_be_left_out",),
+        _paced_by_a_speed,
+    ),
+    Mutant(
+        "lengths said in another unit",
+        _spoken(lambda spoken: replace(spoken, in_si=not spoken.in_si)),
+        WITHIN,
+        speaks,
+    ),
+    Mutant("rotations said in another form", _spoken(_other_orientation), WITHIN, speaks),
+    Mutant(
+        "configurations said to have no words",
+        _moves(lambda words: replace(words, configurations=False)),
+        WITHIN,
+        has("configuration"),
     ),
     Mutant("greatest speed too low", _flag("fastest", 0.01), WITHIN, speaks),
     Mutant(
