@@ -155,7 +155,8 @@ def _calls_of(routine: tree.Routine) -> _Calls:
     for body in bodies:
         for statement in body.walk():
             for expression in expressions_of(statement):
-                calls.names.update(call.name for call in calls_in(expression))
+                for call in calls_in(expression):
+                    calls.names[call.name] += 1
             if isinstance(statement, tree.Invoke):
                 calls.names[statement.name] += 1
                 if statement.name == _BY_NAME and statement.arguments:
