@@ -162,18 +162,26 @@ def read_task(
     chosen = _chosen(backup, task, entry)
     file = task.main if chosen is None else chosen.file
     if file is None:
-        raise InputError(
-            f"{backup.source}: nothing in {task.name} can be run{_noted(backup)}"
-            if not task.entries
-            else f"{backup.source}: which routine? Choose with {spelt('entry')}: "
-            f"{listed(_entry_points(task))}"
-        )
+        raise _which_routine(backup, task, entry)
     if entry is None:
         entry = task.entry if chosen is None else chosen.name
     beside = [backup.root / name for name in task.files if name != file]
     vendor = registry().find_vendor(backup.vendor) if setup is None else setup.vendor
     robot = None if setup is None else setup.robot
     return vendor.read_file(backup.root / file, entry, robot, answers, others, start, beside)
+
+
+def _which_routine(backup: Backup, task: Task, entry: str | None) -> InputError:
+    """That nobody says which routine to run, or that there is none of that name."""
+    if not task.entries:
+        return InputError(f"{backup.source}: nothing in {task.name} can be run{_noted(backup)}")
+    name, _ = entry_call(entry)
+    asked = "which routine?"
+    if name is not None:
+        asked = f"{task.name} has no routine {name} that moves the robot, as far as is at hand."
+    return InputError(
+        f"{backup.source}: {asked} Choose with {spelt('entry')}: {listed(_entry_points(task))}"
+    )
 
 
 def _chosen(backup: Backup, task: Task, entry: str | None) -> BackupEntry | None:

@@ -255,3 +255,11 @@ def test_a_program_tree_beside_a_cell_keeps_its_own_calibration(tmp_path: Path) 
     beside = flyby.read(tmp_path / "job.urp", cell=cell).setup.robot
     assert beside.joints == alone.joints
     assert beside.joints != flyby.robot("ur/ur5e").joints
+
+
+def test_a_routine_that_is_not_there_is_told_from_one_that_nobody_names() -> None:
+    archive = Path(__file__).parents[3] / "examples/kuka_archive"
+    with pytest.raises(InputError, match=r"has no routine NOWHERE that moves the robot.*PRESS"):
+        flyby.read(archive, entry="NOWHERE")
+    with pytest.raises(InputError, match=r"which routine\?.*PRESS"):
+        flyby.read(archive)
