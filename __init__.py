@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from flyby.tasks.pages.show import report, show
     from flyby.tasks.paint import paint
     from flyby.tasks.pareto import pareto
+    from flyby.tasks.place import place
     from flyby.tasks.read import read
     from flyby.tasks.record import record
     from flyby.tasks.station.check import station_check
@@ -56,6 +57,7 @@ __all__ = [
     "paint",
     "pareto",
     "patch",
+    "place",
     "read",
     "record",
     "report",

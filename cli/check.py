@@ -14,7 +14,7 @@ from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of, setup_of_program
 from ..tasks.station.check import StationCheckOptions, station_check_with
-from .changed_station import is_station, refuse_given
+from .output.changed_station import is_station, refuse_given
 from .output.console import fail, print_json, print_rich, print_table, progress
 from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 

@@ -25,7 +25,7 @@ COMMANDS = {
         name: name
         for name in (
             *("check", "translate", "experiment", "compare", "identify"),
-            *("zones", "optimize", "pareto"),
+            *("zones", "optimize", "pareto", "place"),
         )
     },
     "cspace": "view",

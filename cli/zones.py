@@ -17,7 +17,7 @@ from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
 from ..tasks.zones import ZoneOptions, zones_with
-from .changed_station import changed_station, is_station, refuse_given
+from .output.changed_station import changed_station, is_station, refuse_given
 from .output.console import print_json, print_table, progress
 from .output.delivery import deliver
 from .output.solution_report import gain_shown, solution_json, tell_solution

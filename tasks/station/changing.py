@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...problems.improve.solution import Solution
     from ...problems.improve.solve_round_verify import Beside
     from ...problems.improve.station.feasibility import StationFeasibility
-    from ..results.changed_stations import ChangedStation
+    from .changed import ChangedStation
 
 Later = Callable[["StationFeasibility", "Mapping[str, Share]", "dict[str, Solution]"], None]
 """What is done when all robots are improved: it may put other solutions in the place of these."""
@@ -86,7 +86,7 @@ def changed_station(
         MotionError: the station never ends, or does not keep its clearances, as it is.
     """
     from ...problems.improve.station.feasibility import StationFeasibility
-    from ..results.changed_stations import ChangedStation
+    from .changed import ChangedStation
 
     opened = open_station(Path(source), options.say)
     shares = _shares(opened, options)

@@ -11,7 +11,7 @@ from ..options.keywords import by_keywords
 from .station import StationOptions, station_with
 
 if TYPE_CHECKING:
-    from ..results.station_findings import StationFindings
+    from .findings import StationFindings
 
 
 _READER = "reader"
@@ -37,7 +37,7 @@ def station_check_with(source: str | Path, options: StationCheckOptions) -> Stat
         MotionError: a move of a program cannot be driven.
     """
     from ..results.findings import Findings
-    from ..results.station_findings import StationFindings
+    from .findings import StationFindings
 
     driven = station_with(source, options)
     found = {}

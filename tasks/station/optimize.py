@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...problems.improve.solution import Solution
     from ...problems.improve.solve_round_verify import Beside
     from ...problems.improve.station.feasibility import StationFeasibility
-    from ..results.changed_stations import ChangedStation
+    from .changed import ChangedStation
 
 
 @dataclass(frozen=True, kw_only=True)

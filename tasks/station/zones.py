@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...problems.improve.solve_round_verify import Beside
     from ...problems.improve.zones.maximize import ZoneSolution
-    from ..results.changed_stations import ChangedStation
+    from .changed import ChangedStation
 
 
 @dataclass(frozen=True, kw_only=True)

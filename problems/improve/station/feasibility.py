@@ -50,7 +50,7 @@ class _Keeping(Enum):
 
 
 @dataclass(frozen=True)
-class StationState:
+class StationSnapshot:
     """A station with its programs as they are at one time of an improvement.
 
     Args:
@@ -144,12 +144,12 @@ class StationFeasibility:
         actions = {**self.state.actions, name: actions_of(run, self._words[name])}
         return bearing(self.state.station, actions)[name]
 
-    def _with(self, name: str, run: Run) -> StationState:
+    def _with(self, name: str, run: Run) -> StationSnapshot:
         members = dict(self.state.station.members)
         members[name] = replace(members[name], program=run.program, run=run)
         return self._state(replace(self.state.station, members=members), self.state)
 
-    def _state(self, station: RobotStation, before: StationState | None) -> StationState:
+    def _state(self, station: RobotStation, before: StationSnapshot | None) -> StationSnapshot:
         actions = {
             name: before.actions[name]
             if before is not None and before.station.members[name].run is member.run
@@ -165,9 +165,9 @@ class StationFeasibility:
                 self._known = False
         run = StationClock(station, actions).run()
         prover = StationProver(station, ordered, None if before is None else before.prover)
-        return StationState(station, actions, run, orders, prover)
+        return StationSnapshot(station, actions, run, orders, prover)
 
-    def _never_ends(self, state: StationState) -> str | None:
+    def _never_ends(self, state: StationSnapshot) -> str | None:
         """Why a station never ends; None if it does."""
         clock = StationClock(state.station, state.actions)
         stuck = deadlock(state.station, state.run, state.actions, clock)
@@ -186,7 +186,7 @@ class StationFeasibility:
             f"the robots do not keep clear of each other as they are: {said}; mend that first"
         )
 
-    def _refused(self, name: str, state: StationState) -> Certificate | None:
+    def _refused(self, name: str, state: StationSnapshot) -> Certificate | None:
         """Why a state is not taken over, as a certificate of one robot's run; None if it is."""
         never = self._never_ends(state)
         if never is not None:
@@ -203,7 +203,7 @@ class StationFeasibility:
                     return self._certificate(state, name, pair, conflict)
         return None
 
-    def _conflict(self, state: StationState, pair: Pair) -> Conflict | None:
+    def _conflict(self, state: StationSnapshot, pair: Pair) -> Conflict | None:
         """The worst of two robots that are not kept apart as well as before."""
         keeping = self._kept[pair]
         verdict = self._verdict(state, pair, keeping)
@@ -213,7 +213,7 @@ class StationFeasibility:
             return None
         return min(verdict.conflicts.values(), key=_distance)
 
-    def _verdict(self, state: StationState, pair: Pair, keeping: _Keeping) -> PairVerdict | None:
+    def _verdict(self, state: StationSnapshot, pair: Pair, keeping: _Keeping) -> PairVerdict | None:
         """Whether two robots are kept apart in one way; None where that cannot be said."""
         prover, clearance = state.prover.prover(*pair), state.station.clearance
         match keeping:
@@ -229,7 +229,7 @@ class StationFeasibility:
                 return prover.prove(clearance, meetings)
 
     def _certificate(
-        self, state: StationState, name: str, pair: Pair, conflict: Conflict
+        self, state: StationSnapshot, name: str, pair: Pair, conflict: Conflict
     ) -> Certificate:
         side = pair.index(name)
         prover = state.prover.prover(*pair)
@@ -249,7 +249,7 @@ class StationFeasibility:
         )
 
 
-def _may_lock(state: StationState) -> bool:
+def _may_lock(state: StationSnapshot) -> bool:
     return state.orders is not None and bool(state.orders.stuck)
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .findings import Findings
-    from .stations import DrivenStation
+    from ..results.findings import Findings
+    from ..results.stations import DrivenStation
 
 
 @dataclass(frozen=True)

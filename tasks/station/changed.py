@@ -19,7 +19,7 @@ from ...core.station.station import RobotStation
 
 if TYPE_CHECKING:
     from ...problems.improve.solution import Solution
-    from ...problems.improve.station.feasibility import StationState
+    from ...problems.improve.station.feasibility import StationSnapshot
 
 ROBOTS = (
     ("robot", "left"),
@@ -47,8 +47,8 @@ class ChangedStation:
 
     file: Path
     station: RobotStation
-    before: StationState
-    after: StationState
+    before: StationSnapshot
+    after: StationSnapshot
     solutions: Mapping[str, Solution]
     notes: tuple[Note, ...]
 

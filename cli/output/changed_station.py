@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from ..core.door import spelt
-from ..core.errors import OptionError
-from ..tasks.files.outputs import write_in
-from ..tasks.files.places import FilePlaces
-from .output.console import print_json, print_rich, print_table, progress, warn_of
+from ...core.door import spelt
+from ...core.errors import OptionError
+from ...tasks.files.outputs import write_in
+from ...tasks.files.places import FilePlaces
+from .console import print_json, print_rich, print_table, progress, warn_of
 
 if TYPE_CHECKING:
-    from ..tasks.options.entries import TaskOptions
-    from ..tasks.results.changed_stations import ChangedStation
+    from ...tasks.options.entries import TaskOptions
+    from ...tasks.station.changed import ChangedStation
 
 
 def is_station(path: Path) -> bool:
@@ -91,7 +91,7 @@ def _written(made: ChangedStation, places: FilePlaces) -> list[Path]:
 
 
 def _tell(file: Path, made: ChangedStation, places: FilePlaces, written: Sequence[Path]) -> None:
-    from ..tasks.results.changed_stations import ROBOTS
+    from ...tasks.station.changed import ROBOTS
 
     print_table(ROBOTS, made.robot_rows())
     warn_of(made.notes)

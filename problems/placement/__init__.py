@@ -1,0 +1,1 @@
+"""Where a robot stands best for what its program does."""
