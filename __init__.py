@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from flyby.tasks.pages.show import report, show
     from flyby.tasks.paint import paint
     from flyby.tasks.pareto import pareto
-    from flyby.tasks.place import place
     from flyby.tasks.read import read
     from flyby.tasks.record import record
     from flyby.tasks.station.check import station_check
     from flyby.tasks.station.optimize import station_optimize
+    from flyby.tasks.station.place import place
     from flyby.tasks.station.station import station
     from flyby.tasks.station.zones import station_zones
     from flyby.tasks.translate import translate
@@ -79,6 +79,7 @@ _ELSEWHERE = {
     "cell": "catalogue",
     "diff": "diff.diff",
     "open_backup": "backup.opening",
+    "place": "station.place",
     "patch": "write",
     "report": "pages.show",
     "robot": "catalogue",

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import typer
 
-from ..tasks.place import PlaceOptions, place_with
 from ..tasks.read import SourceOptions, read_with
+from ..tasks.station.place import PlaceOptions, place_with
 from .output.console import print_json, print_rich, print_table, progress, warn_of
 from .parameters import AsJson, ProgramFile, with_options
 
@@ -28,7 +28,7 @@ def place(
     if json:
         print_json(made.as_json())
     else:
-        from ..tasks.results.placed import COLUMNS
+        from ..tasks.station.placed import COLUMNS
 
         print_table(COLUMNS, made.rows())
         warn_of(made.notes)

@@ -1,1 +1,1 @@
-"""Several robots in one cell."""
+"""Stations: several robots in one cell, and where a robot stands."""

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ..core.door import spelt
-from ..core.errors import Note, OptionError
-from .options import texts
-from .options.entries import DISTANCE, NOT_NEGATIVE, number, value
-from .options.keywords import by_keywords
-from .setup import CellOptions, start_of, with_setup
+from ...core.door import spelt
+from ...core.errors import Note, OptionError
+from ..options import texts
+from ..options.entries import DISTANCE, NOT_NEGATIVE, number, value
+from ..options.keywords import by_keywords
+from ..setup import CellOptions, start_of, with_setup
 
 if TYPE_CHECKING:
-    from ..core.program.program import Program
-    from .results.placed import PlacedRobot
+    from ...core.program.program import Program
+    from .placed import PlacedRobot
 
 _ROOM = "500,500,0,45"
 _LARGEST = 10.0
@@ -53,9 +53,9 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
     Raises:
         InputError: naming the option, or the robot stands on external axes.
     """
-    from ..core.motion.emulator.controller import Controller
-    from ..problems.placement.place import PlacementTask, place
-    from .results.placed import PlacedRobot
+    from ...core.motion.emulator.controller import Controller
+    from ...problems.placement.place import PlacementTask, place
+    from .placed import PlacedRobot
 
     program, setup = with_setup(program, options)
     cell = setup.surroundings(program, no_floor=options.no_floor)
