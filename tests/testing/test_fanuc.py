@@ -8,9 +8,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 import uninstalled
 
-FANUC = uninstalled.vendor_of("fanuc", "fanuc")
-_CONFORMANCE = uninstalled.tests_of("fanuc", "test_conformance")
+globals().update(uninstalled.own_tests("fanuc"))
 
 
-class TestFanucConformance(_CONFORMANCE.TestFanuc):  # type: ignore[misc]
-    vendor = FANUC
+def test_it_is_found_and_nothing_is_broken() -> None:
+    registry = uninstalled.registry_of("fanuc")
+    assert registry.broken == ()
+    assert len(registry.robot_names) == 4
+    assert registry.reader_of("x.LS").name == "fanuc"

@@ -340,6 +340,9 @@ class _Interpreter:
             return
         if len(found) == 1 and found[0][0] == 1.0:
             _, numbers, sources = found[0]
+            whole = sources[0] if sources else None
+            if whole is not None and len(whole.numbers) == len(numbers) > 1:
+                sources = whole.each()
             self._values.put_all(name, numbers, sources)
             return
         sums = (
@@ -393,6 +396,7 @@ class _Interpreter:
         for part in filter(None, (target, speed, zone, via)):
             for source in filter(None, part.sources):
                 self._reads.by_move(source, self._out.move_index)
+                self._reads.by_expression(source, self._out.move_index)
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
 

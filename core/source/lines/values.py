@@ -22,11 +22,19 @@ class Literal:
     span: Span
     datum: str | None
     numbers: Sequence[Span | None]
+    whole: Span | None = None
 
     @property
     def root(self) -> Span:
-        """The same: parts of it are not read apart."""
-        return self.span
+        """Of the point that it is a number of, or its own."""
+        return self.whole or self.span
+
+    def each(self) -> tuple[Literal | None, ...]:
+        """A literal for each of its numbers."""
+        return tuple(
+            None if span is None else Literal(span, self.datum, (span,), self.span)
+            for span in self.numbers
+        )
 
 
 @dataclass(frozen=True, slots=True)

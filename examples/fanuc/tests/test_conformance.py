@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from flyby_fanuc.dialect import CNT, CR
+from flyby_fanuc.plugin import fanuc
 from hypothesis import strategies as st
 
 from flyby.core.program.move import ArcOrientation, Move, MoveJ
@@ -20,7 +21,7 @@ OVERRIDE = st.sampled_from([1.0, 0.5, 0.8])
 
 class TestFanuc(VendorConformance):
     name = "fanuc"
-    comment = None
+    vendor = fanuc()  # type: ignore[assignment]
     periods = (0.008, 0.024)
 
     def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:

@@ -37,7 +37,8 @@ _SECTION = re.compile(
     r"^[ \t]*/(PROG|ATTR|APPL|MN|POS|END)\b[^\r\n]*", re.MULTILINE | re.IGNORECASE
 )
 _STATEMENT = re.compile(
-    r"^(?P<nested>[ ]{5,}+)?+[ \t]*+\d*+[ \t]*+:(?P<text>[ \t]*+(?:!|//|--eg)[^\r\n]*+|[^;\r\n]*+;)",
+    r"^(?P<nested>[ ]{5,}+)?+[ \t]*+\d*+[ \t]*+:"
+    r"(?P<text>[ \t]*+(?:!|//|--eg)[^\r\n]*+|[^;\r\n]*+;)",
     re.MULTILINE,
 )
 _LINE = re.compile(r"[^\r\n]+")

@@ -81,7 +81,7 @@ def numbers_of(target: Target) -> tuple[float, ...]:
 
 def drive(line: Line, found: re.Match[str], arc: str = "") -> Drive:
     """A motion instruction; ``arc``: what an ``A`` is driven as."""
-    source, text = line.source, line.source.text
+    source = line.source
 
     def operand(name: str) -> Operand:
         span = source.span(*found.span(name))
@@ -177,7 +177,8 @@ def _frames(place: Place, now: Situation) -> tuple[WorkObject, Tool]:
         except SourceError:
             raise InputError(
                 f"{word}[{number}] is not known: put framevar.va of the controller's backup beside "
-                f"the program, or answer {word}[{number},1] to {word}[{number},6] in the table [values]"
+                f"the program, or answer {word}[{number},1] to {word}[{number},6] in the table "
+                "[values]"
             ) from None
         poses.append(None if numbers is None else pose_of(numbers))
     return (

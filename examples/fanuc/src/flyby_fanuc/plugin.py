@@ -14,25 +14,28 @@ from .language import Language
 DATA = Path(__file__).parent / "data"
 
 
+def fanuc() -> Vendor:
+    """The vendor."""
+    language = Language()
+    return Vendor(
+        name="fanuc",
+        robots=lazy_robots(DATA.glob("robots/*.toml")),
+        motion=lazy_motion(DATA / "motion.toml"),
+        label=label,
+        reader=language,
+        writer=language,
+        patcher=language,
+        recorder=language,
+        suffixes=(".ls",),
+        companions={
+            ".va": "the controller's variables: name the program (.ls) beside them",
+            ".tp": "a program in binary form: save it as text (.ls)",
+        },
+        speaks=TP,
+    )
+
+
 @hookimpl
 def flyby_register_vendors(register: VendorRegister) -> None:
     """Hand over FANUC."""
-    language = Language()
-    register.add(
-        Vendor(
-            name="fanuc",
-            robots=lazy_robots(DATA.glob("robots/*.toml")),
-            motion=lazy_motion(DATA / "motion.toml"),
-            label=label,
-            reader=language,
-            writer=language,
-            patcher=language,
-            recorder=language,
-            suffixes=(".ls",),
-            companions={
-                ".va": "the controller's variables: name the program (.ls) beside them",
-                ".tp": "a program in binary form: save it as text (.ls)",
-            },
-            speaks=TP,
-        )
-    )
+    register.add(fanuc())

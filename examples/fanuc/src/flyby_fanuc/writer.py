@@ -123,7 +123,7 @@ class Writer:
         if self.options.opaque is OpaqueStyle.KEEP:
             yield f"  {kept.text}"
             return
-        text = " ".join(kept.text.replace(";", ",").split())
+        text = " ".join(kept.text.removeprefix(TP.comment).replace(";", ",").split())
         for at in range(0, len(text), _REMARK):
             yield f"  !{text[at : at + _REMARK]}"
 
@@ -160,7 +160,8 @@ class Writer:
             and move.speed.joint_fraction != 1.0
         ):
             raise InputError("TP says a time or a share of the speed")
-        yield f"{kind} {' '.join(names)} {speed_text(move, move.speed)} {zone_text(move.zone)}{options}"
+        pace, zone = speed_text(move, move.speed), zone_text(move.zone)
+        yield f"{kind} {' '.join(names)} {pace} {zone}{options}"
 
     def _event(self, event: Event) -> str:
         if event.anchor is not EventAnchor.END or (event.distance and event.time):
