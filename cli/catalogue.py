@@ -27,16 +27,21 @@ ADD = "add"
 def vendors(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List vendors, and what each can read and write."""
+    """List vendors, what each can read and write, and the plugin that it comes with."""
     found = [registry().vendors[name] for name in sorted(registry().vendors)]
     if json:
         print_json([_vendor_json(vendor) for vendor in found])
         return
-    columns = (("vendor", "left"), ("robots", "right"), ("reads", "left"), ("languages", "left"))
-    print_table(
-        columns,
-        [(v.name, str(len(v.robots)), " ".join(v.suffixes), ", ".join(_parts(v))) for v in found],
+    columns = (
+        *(("vendor", "left"), ("robots", "right"), ("reads", "left"), ("languages", "left")),
+        ("from", "left"),
     )
+    print_table(columns, list(map(_vendor_row, found)))
+    if broken := registry().broken:
+        print_table(
+            (("plugin, not loaded", "left"), ("from", "left"), ("because", "left")),
+            [(one.plugin, one.distribution, str(one.error)) for one in broken],
+        )
 
 
 def robots(
@@ -114,11 +119,20 @@ def _show(robot: Robot, json: bool) -> None:
 
 def _parts(vendor: Vendor) -> list[str]:
     parts = {"reader": "read", "writer": "write", "patcher": "patch", "recorder": "record"}
+    parts |= {"speaks": "translate into", "backups": "import", "machine_data": "machine data"}
     return [verb for part, verb in parts.items() if getattr(vendor, part) is not None]
+
+
+def _vendor_row(vendor: Vendor) -> tuple[str, ...]:
+    return (
+        *(vendor.name, str(len(vendor.robots)), " ".join(vendor.suffixes)),
+        *(", ".join(_parts(vendor)), registry().distributions.get(vendor.name, "")),
+    )
 
 
 def _vendor_json(vendor: Vendor) -> dict[str, Any]:
     return {
+        "distribution": registry().distributions.get(vendor.name),
         "vendor": vendor.name,
         "robots": [f"{vendor.name}/{robot}" for robot in sorted(vendor.robots)],
         "suffixes": list(vendor.suffixes),

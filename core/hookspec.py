@@ -11,7 +11,7 @@ and that implements the hook below::
 
     @hookimpl
     def flyby_register_vendors(register: VendorRegister) -> None:
-        register.add(Vendor(name="acme", ...))
+        register.add(Vendor(name="acme", ...), api=1)
 """
 
 from __future__ import annotations
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from .vendor import Vendor
 
 GROUP = "flyby"
+API = 1
+"""Version of all that plugins are built on: this hook, `Vendor` and what its parts get and give, and
+`flyby.core.source.lines`. It rises with every change that a plugin must follow."""
 
 hookspec = pluggy.HookspecMarker(GROUP)
 hookimpl = pluggy.HookimplMarker(GROUP)
@@ -32,11 +35,15 @@ hookimpl = pluggy.HookimplMarker(GROUP)
 class VendorRegister(Protocol):
     """Takes what a plugin has to offer."""
 
-    def add(self, vendor: Vendor) -> None:
+    def add(self, vendor: Vendor, api: int = API) -> None:
         """Take ``vendor`` in.
 
+        Args:
+            api: version of flyby's plugin interface (`API`) that the plugin was built for.
+
         Raises:
-            InputError: a part is missing or of a wrong kind, or the name is taken.
+            InputError: it was built for another one, a part is missing or of a wrong kind, or the
+                name is taken.
         """
         ...
 

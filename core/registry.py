@@ -7,7 +7,7 @@ its distribution and its exception, and hides no other.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -82,8 +82,13 @@ class _Register:
         self._taken = set(taken)
         self.vendors: dict[str, Vendor] = {}
 
-    def add(self, vendor: Vendor) -> None:
+    def add(self, vendor: Vendor, api: int = hookspec.API) -> None:
         """See `hookspec.VendorRegister.add`."""
+        if api != hookspec.API:
+            raise InputError(
+                f"it was built for version {api} of flyby's plugin interface, and this flyby has "
+                f"{hookspec.API}: install a newer {'plugin' if api < hookspec.API else 'flyby'}"
+            )
         if not isinstance(vendor, Vendor):
             raise InputError(f"register.add takes a Vendor, not {vendor!r}")
         if vendor.name in self._taken or vendor.name in self.vendors:
@@ -98,10 +103,12 @@ class Registry:
     Args:
         vendors: by name.
         broken: plugins that could not be taken in.
+        distributions: what each vendor was installed with, its version included, by its name.
     """
 
     vendors: Mapping[str, Vendor]
     broken: tuple[BrokenPlugin, ...] = ()
+    distributions: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def discover(cls, entry_points: Iterable[metadata.EntryPoint] | None = None) -> Registry:
@@ -109,14 +116,17 @@ class Registry:
         if entry_points is None:
             entry_points = metadata.entry_points(group=hookspec.GROUP)
         vendors: dict[str, Vendor] = {}
+        distributions: dict[str, str] = {}
         broken: list[BrokenPlugin] = []
         for entry_point in sorted(entry_points, key=_order):
             try:
-                vendors |= _vendors_of(entry_point.load(), entry_point.name, vendors)
+                found = _vendors_of(entry_point.load(), entry_point.name, vendors)
+                vendors |= found
+                distributions |= dict.fromkeys(found, _with_version(entry_point))
             except (Exception, SystemExit) as error:
                 plugin = BrokenPlugin(entry_point.name, _distribution(entry_point), error)
                 broken.append(plugin)
-        return cls(MappingProxyType(vendors), tuple(broken))
+        return cls(MappingProxyType(vendors), tuple(broken), MappingProxyType(distributions))
 
     def find_vendor(self, name: str) -> Vendor:
         """The vendor ``name``.
@@ -287,3 +297,8 @@ def _order(entry_point: metadata.EntryPoint) -> tuple[bool, str, str]:
 
 def _distribution(entry_point: metadata.EntryPoint) -> str:
     return entry_point.dist.name if entry_point.dist is not None else "an unnamed distribution"
+
+
+def _with_version(entry_point: metadata.EntryPoint) -> str:
+    version = getattr(entry_point.dist, "version", None)
+    return f"{_distribution(entry_point)}{f' {version}' if version else ''}"

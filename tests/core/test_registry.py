@@ -310,3 +310,26 @@ def test_a_file_beside_a_program_says_what_to_name() -> None:
         registry.reader_of("job/A.DAT")
     with pytest.raises(InputError, match=r"'\.txt' is among 'suffixes' and 'companions'"):
         vendor(reader=Language(), suffixes=(".txt",), companions={".txt": "no"})
+
+
+@pytest.mark.parametrize(("api", "remedy"), [(0, "newer plugin"), (99, "newer flyby")])
+def test_a_plugin_built_for_another_interface_says_so(
+    entry_point: Any, api: int, remedy: str
+) -> None:
+    module = ModuleType("old")
+
+    @hookimpl
+    def flyby_register_vendors(register: VendorRegister) -> None:
+        register.add(vendor("old"), api=api)
+
+    module.flyby_register_vendors = flyby_register_vendors  # type: ignore[attr-defined]
+    registry = Registry.discover([entry_point("old", module), entry_point("new", plugin("new"))])
+    assert f"version {api} of flyby's plugin interface" in str(broken(registry))
+    assert remedy in str(broken(registry))
+    assert sorted(registry.vendors) == ["new"]
+
+
+def test_a_vendor_knows_what_it_was_installed_with(entry_point: Any) -> None:
+    point = entry_point("acme", plugin("acme"))
+    point.dist.version = "1.2"
+    assert Registry.discover([point]).distributions == {"acme": "flyby-test 1.2"}

@@ -38,4 +38,4 @@ def fanuc() -> Vendor:
 @hookimpl
 def flyby_register_vendors(register: VendorRegister) -> None:
     """Hand over FANUC."""
-    register.add(fanuc())
+    register.add(fanuc(), api=1)
