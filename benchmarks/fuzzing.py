@@ -230,10 +230,18 @@ def attempt(seeds: Seeds, case: str, number: int) -> Failure | None:
     What took too long is read once more: a machine that stalled is no failure of the reader.
     """
     reading, name, file = damaged(seeds, case, number)
-    what = _read(reading, name, file)
+    what = _in_time(reading, name, file)
     if what == _TOO_SLOW:
-        what = _read(reading, name, file)
+        what = _in_time(reading, name, file)
     return Failure(number, what) if what else None
+
+
+def _in_time(reading: Reading, name: str, file: SourceFile) -> str:
+    """As `_read`, where the time may also be over when the reader has just ended."""
+    try:
+        return _read(reading, name, file)
+    except Slow:
+        return _TOO_SLOW
 
 
 def _read(reading: Reading, name: str, file: SourceFile) -> str:

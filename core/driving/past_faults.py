@@ -9,6 +9,7 @@ from ..motion.emulator.run import Run
 from ..program.program import Program
 from ..program.question import QuestionKind
 from ..program.target import JointTarget
+from ..spatial.pose import IDENTITY
 from .driven_program import DrivenPart, DrivenProgram, Fault, refusal
 
 _OF_PLACES = (
@@ -169,7 +170,9 @@ class _Drive:
         if cause not in _OF_PLACES:
             return ""
         used = self._program.moves[move]
-        names = [n.casefold() for n in (used.tool.name, used.work_object.name)]
+        # One that the program has set by now is what it is set to.
+        parts = (used.tool.name, used.tool.tcp), (used.work_object.name, used.work_object.pose)
+        names = [name.casefold() for name, pose in parts if pose == IDENTITY]
         asked = [
             question.key
             for question in self._program.questions

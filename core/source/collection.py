@@ -10,12 +10,17 @@ _MOST_BUILT = 300_000
 """Objects built since the last search among old ones, after which the next reader begins with one.
 
 A program of 1000 lines makes some 50 000."""
+_AT_MOST = 16
+"""Times as many, where searches find next to nothing: of most runs nothing is left."""
+_WORTH = 0.1
+"""Share of what was built that a search finds, from which on it was worth its time."""
 
 
 class _Built:
     """What readers have built and nobody has looked through."""
 
     objects = 0
+    patience = 1
 
 
 @contextmanager
@@ -27,8 +32,9 @@ def collection_paused() -> Iterator[None]:
     looks for garbage before it begins, where much was built before it.
     """
     was_enabled = gc.isenabled()
-    if was_enabled and _Built.objects > _MOST_BUILT:
-        gc.collect()
+    if was_enabled and _Built.objects > _MOST_BUILT * _Built.patience:
+        worth = gc.collect() > _WORTH * _Built.objects
+        _Built.patience = 1 if worth else min(2 * _Built.patience, _AT_MOST)
         _Built.objects = 0
     gc.disable()
     begun = gc.get_count()[0]

@@ -200,6 +200,14 @@ class Interpreter:
         self._triggers.end()
         self._transcript.check_driven()
 
+    def forget(self) -> None:
+        """Let go of all that was read. The parts of a run refer to one another: what they hold
+        would wait for a search for garbage, which takes as long as half the reading."""
+        for part in [*vars(self).values()]:
+            if hasattr(part, "__dict__"):
+                vars(part).clear()
+        vars(self).clear()
+
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
         return self._transcript.statements(self._evaluator.reads)

@@ -80,7 +80,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
                 "expressions, blocks and calls are nested too deeply", entry.span
             ) from None
         nothing_driven(library.damages, run.driven)
-        return Program(
+        program = Program(
             run.statements(),
             entry.text,
             notes=(*notes, *run.notes()),
@@ -90,6 +90,8 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
             cycle=run.course.cycle,
             sections=run.course.sections.found(run.course.cycle),
         )
+        run.forget()
+        return program
 
 
 def _arguments(library: Library, entry: Routine, text: str | None) -> tuple[Expression | None, ...]:
