@@ -19,6 +19,9 @@ MOST_BESIDE = 5000
 """Files near a program that are looked at, in each folder above it."""
 MOST_ABOVE = 8
 """Folders above a program in which a backup may begin."""
+_MOST_NEAR = 4
+"""Of them those where it may do so by what else is there (``RAPID/TASK1/PROGMOD`` has three above):
+what is further away is seldom of the same robot."""
 
 
 def backup_round(file: Path, registry: Registry) -> tuple[str, Path] | None:
@@ -36,7 +39,8 @@ def backup_round(file: Path, registry: Registry) -> tuple[str, Path] | None:
         opener = vendor.backups()
         with suppress(OSError, InputError):
             marked = [one for one in above if opener.root_in([_inside(whole, one)]) == ""]
-            near = (one for one in above if opener.root_in(_near(whole, one)) == "")
+            beside = above[:_MOST_NEAR]
+            near = (one for one in beside if opener.root_in(_near(whole, one)) == "")
             root = marked[-1] if marked else next(near, None)
             if root is not None and opener.root_in(names_below(root)) == "":
                 return vendor.name, root

@@ -59,6 +59,15 @@ def test_a_script_beside_an_installation_of_a_ur(tmp_path: Path) -> None:
     assert backup_round(script, installed()) == ("ur", folder)
 
 
+def test_what_is_far_above_a_script_is_not_its_backup(tmp_path: Path) -> None:
+    (tmp_path / "stray.installation").write_bytes(UR_INSTALLATION)
+    for depth, found in ((1, True), (3, True), (4, False), (6, False)):
+        script = tmp_path.joinpath(*"abcdef"[:depth], "pick.script")
+        script.parent.mkdir(parents=True, exist_ok=True)
+        script.write_text("movej([0,0,0,0,0,0])\n", "utf-8")
+        assert (backup_round(script, installed()) is not None) == found
+
+
 def test_files_elsewhere_lie_in_no_backup(abb: Path, tmp_path: Path) -> None:
     module = modules(abb, ".mod")[0]
     for place in (tmp_path / "alone.mod", abb.parent / "beside.mod"):
