@@ -73,14 +73,22 @@ def _tell(found: Comparison) -> None:
     print_rich(f"{found.run.name} on {compared.robot.name}: log less emulation")
     print_table(COLUMNS, found.rows())
     print_rich(
-        f"cycle time {aligned.moving:.3f} s emulated, {aligned.logged_moving:.3f} s logged: "
-        f"ratio {f.cycle_time_ratio:.4f}",
-        f"the log's clock is {f.offset:+.4f} s off, and {1e3 * f.drift:+.1f} ms more at the end "
-        "than at the start",
+        f"the robot took {_longer(aligned.moving, aligned.logged_moving)}: "
+        f"{aligned.logged_moving:.3f} s logged, {aligned.moving:.3f} s emulated "
+        f"(ratio {f.cycle_time_ratio:.4f})",
+        f"laid on the emulation, the log begins at {f.offset:+.4f} s, and is "
+        f"{1e3 * abs(f.drift):.1f} ms {'behind' if f.drift > 0 else 'ahead'} at its end",
         f"{len(aligned.rows)} of {len(log.t)} samples compared, every {1e3 * log.period:.3g} ms "
         f"(jitter {1e3 * log.jitter:.2g} ms); {len(log.torn)} off the path, {len(log.held)} held, "
         f"{counted(log.holes, 'hole')}",
     )
+
+
+def _longer(emulated: float, logged: float) -> str:
+    share = 100 * (logged / emulated - 1.0) if emulated > 0.0 else 0.0
+    if abs(share) < 0.05:
+        return "as long as emulated"
+    return f"{abs(share):.1f} % {'longer' if share > 0 else 'less time'} than emulated"
 
 
 def _json(compared: Prediction, run: LoggedRun, scale: TimeScale | None) -> dict[str, Any]:

@@ -69,14 +69,21 @@ class TimeScale:
 
 
 def explained(cause: Cause, value: float, what: str, alone: bool) -> str:
-    """What a scale makes of some logs, in a sentence."""
-    scale = (
-        f"a time scale of {value:.3f}"
-        if cause is Cause.CLOCK
-        else f"a speed override of {100 * value:.1f} %"
-    )
-    how = f"alone explains {what}" if alone else f"is part of what explains {what}"
-    return f"{scale} {how}: check override and clock"
+    """What a scale makes of some logs, in a sentence.
+
+    Args:
+        cause: which number it is.
+        value: logged over emulated time, or the share of all speeds.
+        what: of what, ``this log``, ``these logs``.
+        alone: whether it explains them without anything else.
+    """
+    if cause is Cause.OVERRIDE:
+        how = f"drove as under a speed override of {100 * value:.1f} %"
+    else:
+        more = "longer than" if value > 1.0 else "less time than"
+        how = f"took {100 * abs(value - 1.0):.1f} % {more} emulated, evenly"
+    beside = "" if alone else ", beside what other figures explain"
+    return f"in {what} the robot {how}{beside}: check override and clock"
 
 
 def time_scale(

@@ -55,6 +55,9 @@ class Interval:
     upper: float
 
 
+NO_RUN = "no log changes with it: no run uses what it stands for"
+
+
 @dataclass(frozen=True)
 class Unseen:
     """A parameter that the logs say nothing about; it stays where it was.
@@ -62,10 +65,12 @@ class Unseen:
     Args:
         name: of the parameter.
         reason: in a sentence.
+        unused: whether no run comes to where it matters.
     """
 
     name: str
     reason: str
+    unused: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,7 +116,7 @@ def unseen(
         if all(key.startswith("blend.") for key in one.keys) and few:
             found.append(Unseen(one.name, _too_small(runs)))
         elif most < SEEN:
-            found.append(Unseen(one.name, "no log changes with it: no run uses what it stands for"))
+            found.append(Unseen(one.name, NO_RUN, unused=True))
     if found:
         return found
     entangled = _entangled(

@@ -12,6 +12,7 @@ from ...core.notebook import PictureCurve, page, picture, table
 from ...identification.fit import Fit, Judgement, Outcome
 from ...identification.fit.selection import Score
 from ..files.logged_runs import LoggedRuns
+from .unseen_figures import unseen_said
 
 RUN_COLUMNS = (
     ("run", "left"),
@@ -96,7 +97,7 @@ class IdentifiedModel:
         for one in self.fit.rough:
             told.append(f"{one.name} is known roughly ({one.reason}), but the logs ask for it")
         for one in self.fit.unseen:
-            told.append(f"{one.name} is not identifiable: {one.reason}; it stays as it was")
+            told.append(unseen_said(one, self.fit.runs[0].robot.axis_names))
         if not self.fit.converged:
             told.append(
                 "the fit was ended before it could go no further; treat its figures with care"

@@ -163,4 +163,4 @@ def test_a_clock_or_an_override_is_found_to_explain_a_log(flyby: Flyby, log: Pat
     assert found["time_scale"]["cause"] == "clock"
     assert found["time_scale"]["value"] == pytest.approx(1.02, abs=1e-3)
     told = " ".join(flyby(*words).stderr.split())
-    assert "a time scale of 1.020 alone explains this log: check override and clock" in told
+    assert "the robot took 2.0 % longer than emulated, evenly: check override and clock" in told

@@ -53,7 +53,9 @@ def test_a_clock_alone_explains_a_log(clock: float) -> None:
     found = time_scale(controller, predict(controller, run.name, run.program, clean(run), 1e-3))
     assert found is not None and found.alone and found.cause is Cause.CLOCK
     assert found.value == pytest.approx(clock, abs=1e-3)
-    assert f"a time scale of {found.value:.3f} alone explains this log" in found.told
+    more = "longer" if found.value > 1.0 else "less time"
+    percent = f"{100 * abs(found.value - 1.0):.1f}"
+    assert f"the robot took {percent} % {more} than emulated, evenly:" in found.told
     assert "check override and clock" in found.told
 
 
@@ -87,7 +89,7 @@ def test_what_is_fitted_beside_a_clock_is_true(clock: float, share: float) -> No
     assert said[0] == "run0, run1, run2"
     own = found.nuisances[0]
     assert (1 / own.clock, own.override) == pytest.approx((clock, share), abs=1e-3)
-    assert ("override" if clock == 1.0 else f"{clock:.3f}") in said[1]
+    assert ("override of" if clock == 1.0 else f"{100 * abs(clock - 1):.1f} %") in said[1]
 
 
 def test_one_run_at_another_override_is_told_from_the_others() -> None:
@@ -114,5 +116,5 @@ def test_a_clock_that_figures_hide_is_found_where_they_leave_much_unexplained() 
     assert run.scale is None
     found = fit(ParameterSet.named(START, TRUE_VALUES), [run])
     (said,) = found.scales
-    assert "a time scale of 1.020 is part of what explains this log" in said[1]
+    assert "the robot took 2.0 % longer than emulated, evenly, beside what other" in said[1]
     assert found.after < 0.05
