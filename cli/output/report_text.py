@@ -77,6 +77,8 @@ def _print_losses(run: Run) -> None:
         print_table(LINE_COLUMNS, rows)
     if run.causes:
         print_table(CAUSE_COLUMNS, [cause_row(c, place(c.span), whole) for c in run.causes])
+        if said := run.first_to_change(place):
+            print_rich(said)
 
 
 def _further(lines: Sequence[LineReport], whole: float) -> tuple[str, ...]:

@@ -160,7 +160,7 @@ def _causes(run: Run, sources: SourceList, track: int) -> list[PageTable]:
         )
         t = first.begin if first.driven and not line else None
         rows.append(PageRow(cells, "", track, t, None, source, line))
-    note = "Seconds that the program gains if one cause alone falls away."
+    note = run.first_to_change() or "Nothing holds the program back by itself."
     return [PageTable("Causes", _CAUSES, rows, note)]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -27,6 +27,9 @@ COLUMNS = (
     ("most of it at line", "right"),
 )
 WAITS, DEVICES, SETTLING = "waits of the program", "devices", "settling"
+PlaceOf = Callable[[Span], str]
+_WORTH = 0.005
+"""Share of the time that a cause gives back at least to be looked at first."""
 SMALLEST = 0.002
 """Share of the time below which a limit is not looked into."""
 PASSED = 0.01
@@ -150,6 +153,41 @@ def _stops(controller: Controller, driven: DrivenProgram, zone: Zone) -> Iterato
         name = f"stops, if passed in zones of {zone_shown(zone)}"
         span = driven.program.moves[stops[0] - 1].statement
         yield TimeCause(name, None, gained, tuple(stops), span)
+
+
+def first_to_change(
+    causes: Sequence[TimeCause], runs: Mapping[Span, int], whole: float, places: PlaceOf
+) -> str:
+    """What to look at first, in a sentence or two; empty where nothing is worth it.
+
+    Args:
+        causes: of a run, what gives back most first.
+        runs: how often each line drives.
+        whole: s of the run.
+        places: a line, short.
+    """
+    worth = [cause for cause in causes if (cause.gain or 0.0) >= _WORTH * whole > 0.0]
+    return " ".join(
+        _sentence(cause, word, runs, whole, places)
+        for cause, word in zip(worth[:2], ("Look first at", "Then at"), strict=False)
+    )
+
+
+def _sentence(
+    cause: TimeCause, word: str, runs: Mapping[Span, int], whole: float, places: PlaceOf
+) -> str:
+    where = ""
+    if cause.span is not None:
+        times = runs.get(cause.span, 1)
+        often = f", which runs {times} times" if times > 1 else ""
+        where = f", most of it at line {places(cause.span)}{often}"
+    spent = ""
+    if cause.time is not None:
+        spent = f", {cause.time:.2f} s of {whole:.2f} s"
+    return (
+        f"{word} {cause.name}{spent}{where}: without it the cycle would be {cause.gain:.2f} s "
+        "shorter."
+    )
 
 
 def cause_row(cause: TimeCause, place: str, whole: float) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ....core.errors import MotionError, Span
@@ -44,7 +44,7 @@ def changes(
     for corner, zone in zones.items():
         index = points.move[corner]
         move, known = program.moves[index], found.get(corner)
-        others = [points.move[other] for other in group[corner] if other != corner]
+        shared = "" if len(group[corner]) == 1 else _shared(points, program, group[corner], found)
         rows.append(
             ZoneChange(
                 index,
@@ -52,7 +52,7 @@ def changes(
                 zone,
                 0.0 if known is None else known.size,
                 None if known is None else known.fails,
-                _limit(known, zone, others),
+                _limit(known, zone, shared),
                 move.statement,
             )
         )
@@ -63,12 +63,31 @@ _LESS = 0.98
 """Share of what is clear below which a zone is smaller for another reason."""
 
 
-def _limit(found: SizeBracket | None, zone: Zone, others: list[int]) -> str:
+def _shared(
+    points: Points,
+    program: Program,
+    members: Sequence[int],
+    found: Mapping[int, SizeBracket],
+) -> str:
+    """Who limits a zone that several moves share, in a sentence."""
+    known = {corner: found[corner].size for corner in members if corner in found}
+    least = points.move[min(known or members, key=lambda corner: known.get(corner, 0.0))]
+    moves = sorted(points.move[corner] for corner in members)
+    spans = {program.moves[move].statement for move in moves}
+    span = spans.pop()
+    if not spans and span is not None:
+        return f"line {span.line} runs {len(moves)} times; move {least + 1} limits it"
+    named = ", ".join(str(move + 1) for move in moves)
+    return f"moves {named} share one zone; move {least + 1} limits it"
+
+
+def _limit(found: SizeBracket | None, zone: Zone, shared: str) -> str:
+    """What limits a zone; shared: who does, where several moves have it in common."""
     if found is None:
         return "the robot stops here whatever the zone"
     if found.size > 0.0 and size_of(zone) < _LESS * found.size:
-        if others:
-            return f"one zone for {len(others) + 1} moves, and another of them needs it so"
+        if shared:
+            return shared
         return "the neighbouring zone"
     if found.fails is None:
         return "the rules for neighbouring points"
