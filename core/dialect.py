@@ -143,6 +143,8 @@ class SignalWords:
         event: the statement that the text of an event on the way is short for.
         stops: whether the robot stops where an output is set.
         meets: what a statement waits for of other robots' programs; None for nothing.
+        together: the id of a move, by its statement, that other robots make with it; None where a
+            language has none, and one motion alone is made together behind a meeting.
     """
 
     read: Callable[[str], SignalAction | None]
@@ -152,6 +154,7 @@ class SignalWords:
     event: Callable[[str], str] = _as_it_is
     stops: bool = False
     meets: Callable[[str], Meet | None] = _no_meeting
+    together: Callable[[str], str | None] | None = None
 
 
 @dataclass(frozen=True)

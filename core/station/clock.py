@@ -12,6 +12,7 @@ from ..arrays import FloatArray
 from ..errors import InputError, Note
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
+from .pace import Pace
 from .plc import Plc
 from .station import RobotStation, levels_at_start, signal_key
 
@@ -45,6 +46,7 @@ class Schedule:
         end: s, when it has ended; infinite if it never does.
         waits: in their order.
         lag: s by which the motion is behind its command.
+        pace: at which its own time passes.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Schedule:
     end: float
     waits: tuple[Spell, ...]
     lag: float = 0.0
+    pace: Pace = field(default_factory=Pace.steady)
 
     def clocked(self, own: FloatArray) -> FloatArray:
         """The station's time of spans of the robot's own (L, 2) s: from when, until when."""
@@ -60,18 +63,18 @@ class Schedule:
         passed = np.append(0.0, np.cumsum(spent))
         before = passed[np.searchsorted(at, own[:, 0] - 1e-9, "left")]
         behind = passed[np.searchsorted(at, own[:, 1] + 1e-9, "right")]
-        return np.asarray(own + self.begin + np.stack([before, behind], -1))
+        return np.asarray(self.pace.passed(own) + self.begin + np.stack([before, behind], -1))
 
     def own(self, time: FloatArray) -> FloatArray:
         """The robot's own time (T,) s at times (T,) s of the station."""
         at = np.array([spell.action.time for spell in self.waits]) + self.lag
         spent = np.array([spell.end - spell.begin for spell in self.waits])
-        start = at + self.begin + np.append(0.0, np.cumsum(spent))[:-1]
+        start = self.pace.passed(at) + self.begin + np.append(0.0, np.cumsum(spent))[:-1]
         left = time - self.begin
         for begin, length in zip(start - self.begin, spent, strict=True):
             waited = np.clip(time - self.begin - begin, 0.0, length)
             left = left - waited
-        return np.asarray(left)
+        return self.pace.own_at(np.asarray(left))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +130,7 @@ class _Robot:
     duration: float
     offset: float
     lag: float
+    pace: Pace
     next: int = 0
     since: float | None = None
     waits: list[Spell] = field(default_factory=list)
@@ -136,8 +140,8 @@ class _Robot:
     def due(self) -> float:
         """s, when it comes to its next action."""
         if self.next < len(self.actions):
-            return self.offset + self.actions[self.next].time
-        return self.offset + self.duration
+            return self.offset + self.pace.at(self.actions[self.next].time)
+        return self.offset + self.pace.at(self.duration)
 
     @property
     def current(self) -> Action:
@@ -176,7 +180,12 @@ class StationClock:
         self._plc = Plc(station.gates, self._levels)
         self._robots = {
             name: _Robot(
-                name, actions[name], member.run.duration, member.begins, member.run.timing.lag
+                name,
+                actions[name],
+                member.run.duration,
+                member.begins,
+                member.run.timing.lag,
+                member.pace,
             )
             for name, member in station.members.items()
         }
@@ -343,5 +352,5 @@ class StationClock:
             if robot.since is not None:
                 waits.append(Spell(robot.current, robot.since, np.inf))
             begin = self._station.members[name].begins
-            schedules[name] = Schedule(name, begin, robot.end, tuple(waits), robot.lag)
+            schedules[name] = Schedule(name, begin, robot.end, tuple(waits), robot.lag, robot.pace)
         return StationRun(schedules, tuple(self._changes), tuple(self._notes.values()))

@@ -12,6 +12,7 @@ from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
 from .gates import Gate
+from .pace import Pace
 
 
 @dataclass(frozen=True, repr=False)
@@ -25,6 +26,7 @@ class StationRobot:
         cell: where it stands, with what stands around.
         run: the program as driven.
         begins: s after the station's start at which its program begins.
+        pace: at which its own time passes where others set it.
     """
 
     name: str
@@ -33,6 +35,7 @@ class StationRobot:
     cell: Cell
     run: Run
     begins: float = 0.0
+    pace: Pace = field(default_factory=Pace.steady)
 
     def __repr__(self) -> str:
         return in_line(

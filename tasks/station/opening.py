@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,10 +12,12 @@ from ..read import SourceOptions, read_with
 from ..setup import Setup, setup_of_program, start_of
 
 if TYPE_CHECKING:
+    from ...core.dialect import SignalWords
     from ...core.program.program import Program
     from ...core.station.actions import Action
     from ...core.station.station import RobotStation, StationRobot
     from ...core.station.station_file import MemberFile, StationFile
+    from ...core.station.synchronised import IdOf
 
 
 @dataclass(frozen=True)
@@ -44,9 +46,10 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     from ...core.station.actions import actions_of, unknown_of
     from ...core.station.station import RobotStation
     from ...core.station.station_file import read_station_file
+    from ...core.station.synchronised import synchronised
 
     file = read_station_file(source)
-    members, actions, unknown = {}, {}, []
+    members, actions, unknown, ids = {}, {}, [], {}
     for member in file.members:
         say(f"reading and driving {member.name}")
         made, setup = _member(member, file)
@@ -54,6 +57,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         speaks = setup.vendor.speaks
         words = None if speaks is None else speaks.signals
         actions[member.name] = actions_of(made.run, words)
+        ids[member.name] = _ids(made, words)
         for text, span in unknown_of(made.run, words, _looked_at(file, member.name)):
             where = "" if span is None else f"{span}: "
             unknown.append(
@@ -64,6 +68,12 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
             )
     _check_signals(file, members, actions)
     _check_starts(file, members)
+    try:
+        shared = synchronised({n: m.run for n, m in members.items()}, actions, ids)
+    except InputError as error:
+        raise InputError(f"{file.file}: {error}") from None
+    actions = shared.actions
+    members = {n: replace(m, pace=shared.paces.get(n, m.pace)) for n, m in members.items()}
     station = RobotStation(
         members,
         file.wires,
@@ -74,8 +84,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         file.allowed,
         file.file,
     )
-    notes = tuple(_coordinated(actions))
-    return OpenedStation(station, actions, tuple(unknown), notes)
+    return OpenedStation(station, actions, tuple(unknown), shared.notes)
 
 
 def _looked_at(file: StationFile, robot: str) -> set[str]:
@@ -86,19 +95,22 @@ def _looked_at(file: StationFile, robot: str) -> set[str]:
     return {rest.strip() for own, _, rest in parted if own.strip().casefold() == robot.casefold()}
 
 
-def _coordinated(actions: dict[str, tuple[Action, ...]]) -> Iterator[Note]:
-    """Moves that the controller times with those of other robots, which is not emulated."""
-    from ...core.program.signal import Meet
+def _ids(member: StationRobot, words: SignalWords | None) -> IdOf | None:
+    """The ids by which a program's moves are made together with others'."""
+    from ...core.source.reading import Reading
 
-    for name, doings in actions.items():
-        for action in doings:
-            if isinstance(action.does, Meet) and action.does.coordinated:
-                where = "" if action.span is None else f"{action.span}: "
-                yield Note(
-                    f"{name}: {where}the moves behind {action.text} are coordinated with other "
-                    "robots' by the controller; here each robot drives them at its own speed, so "
-                    "that times and clearances in time are not those of the cell there"
-                )
+    together = None if words is None else words.together
+    if together is None:
+        return None
+    program = member.program
+
+    def found(index: int) -> str | None:
+        span, reading = program.moves[index].statement, program.reading
+        if span is None or not isinstance(reading, Reading) or span.file not in reading.files:
+            return None
+        return together(reading.files[span.file].text[span.start : span.end])
+
+    return found
 
 
 def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]:

@@ -96,6 +96,15 @@ def meets(text: str) -> Meet | None:
     return Meet(found["label"].casefold(), coordinated=found["word"].casefold() == "syncmoveon")
 
 
+_ID = re.compile(r"\\ID\s*:=\s*(\w+)", re.IGNORECASE)
+
+
+def together(text: str) -> str | None:
+    r"""The ``\ID`` of a move that other tasks make at the same time."""
+    found = _ID.search(text)
+    return None if found is None else found[1].casefold()
+
+
 def event(text: str) -> str:
     r"""The instruction that an event's text is short for: ``doGun,1``, ``\DOp:=doGun,1``."""
     found = re.fullmatch(r"\s*(?:\\(?P<kind>[AD])Op\s*:=)?\s*(?P<what>\w+\s*,.*)", text, re.I)
@@ -130,4 +139,5 @@ SIGNALS = SignalWords(
     lambda action: "do?" if isinstance(action, SetSignal) else "di?",
     event,
     meets=meets,
+    together=together,
 )

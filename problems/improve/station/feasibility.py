@@ -94,6 +94,7 @@ class StationFeasibility:
         given: as it was given.
 
     Raises:
+        InputError: robots make moves together.
         MotionError: two robots are not proven to keep clear, or the station never ends.
     """
 
@@ -105,6 +106,12 @@ class StationFeasibility:
         jitter: float,
         say: Callable[[str], None] = lambda _: None,
     ) -> None:
+        together = [name for name, member in station.members.items() if len(member.pace.own) > 1]
+        if together:
+            raise InputError(
+                f"{', '.join(together)}: programs whose moves are made together with other robots' "
+                "are not improved yet"
+            )
         self._words, self._known, self._jitter = words, known, jitter
         self.given = self.state = self._state(station, None)
         self._kept: dict[Pair, _Keeping] = {}

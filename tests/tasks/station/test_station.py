@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import flyby
@@ -368,12 +369,63 @@ def test_statements_that_nobody_knows_are_no_interlock(write: Write) -> None:
     assert "one.mod:9" in note and "SetDO\\SDelay" in note
 
 
-def test_coordinated_moves_are_noted(write: Write) -> None:
-    both = ["go 0", "SyncMoveOn s1, all", "go 1", "SyncMoveOff s2", "go 0"]
-    made = station(write({"one": both, "two": both}))
-    notes = [str(note) for note in made.notes if "at its own speed" in str(note)]
-    assert len(notes) == 2 and "SyncMoveOn s1" in notes[0]
-    assert made.deadlock is None
+def absolute(k: int, name: int, zone: str = "fine") -> str:
+    """A move to the K-th home that others make with it."""
+    return f"MoveAbsJ \\ID:={name}, [{HOMES[k]},{UNUSED}], v1000, {zone}, tool0"
+
+
+def test_moves_of_one_id_take_what_the_slowest_takes(write: Write) -> None:
+    far = f"MoveAbsJ \\ID:=10, [[80,0,0,0,30,0],{UNUSED}], v300, fine, tool0"
+    begun, corner = ["go 0", "SyncMoveOn s1, all"], absolute(0, 20, "z10")
+    programs = {
+        "one": [*begun, absolute(1, 10), corner, absolute(2, 30), "SyncMoveOff s2", "go 0"],
+        "two": [*begun, far, corner, absolute(1, 30), "SyncMoveOff s2"],
+    }
+    made = station(write(programs))
+    assert made.deadlock is None and not made.may_lock
+    begins, slowest = {}, 0.0
+    for name, schedule in made.run.schedules.items():
+        run = made.station.members[name].run
+        first = run.path.route.moves.index(1)
+        spans = np.stack([run.timing.begins()] * 2, -1)
+        begins[name] = schedule.clocked(spans)[first : first + 3, 1]
+        slowest = max(slowest, run.timing.settled_durations()[first])
+    assert begins["one"] == pytest.approx(begins["two"], abs=1e-6)
+    assert begins["one"][1] - begins["one"][0] == pytest.approx(slowest, abs=1e-6)
+    times = np.linspace(0.0, made.duration, 200)
+    schedule = made.run.schedules["one"]
+    back = schedule.clocked(np.stack([schedule.own(times)] * 2, -1))
+    inside = (times >= back[:, 0] - 1e-6) & (times <= back[:, 1] + 1e-6)
+    assert inside[times < schedule.end].all()
+    (note,) = [str(note) for note in made.notes if "together" in str(note)]
+    assert "one and two make 3 moves together" in note
+
+
+@pytest.mark.parametrize(
+    ("other", "words"),
+    [
+        ([absolute(1, 10), absolute(0, 20)], ("ID 30", "one.mod:11", "two.mod:7")),
+        (
+            [absolute(1, 10), absolute(0, 30), absolute(1, 20)],
+            ("one.mod:10", "two.mod:9", "order"),
+        ),
+        ([absolute(1, 10), absolute(0, 20), absolute(1, 30), absolute(0, 30)], ("as many moves",)),
+    ],
+)
+def test_an_id_that_one_task_lacks_is_named_with_both_lines(
+    write: Write, other: list[str], words: Sequence[str]
+) -> None:
+    ids = [absolute(1, 10), absolute(0, 20), absolute(2, 30)]
+    file = write(
+        {
+            "one": ["go 0", "go 0", "SyncMoveOn s1, all", *ids, "SyncMoveOff s2"],
+            "two": ["go 0", "SyncMoveOn s1, all", *other, "SyncMoveOff s2"],
+        }
+    )
+    with pytest.raises(FlybyError) as caught:
+        station(file)
+    for word in ("station.toml", *words):
+        assert word in str(caught.value), str(caught.value)
 
 
 def test_samples_that_seem_too_near_hide_nothing(
@@ -415,3 +467,25 @@ def test_a_kuka_and_a_ur_join_hands(tmp_path: Path) -> None:
     assert asked.end == pytest.approx(out.time + 0.030)
     assert given.end > asked.end and made.deadlock is None
     assert made.clear and made.clearances[0].any_time.proven
+
+
+def test_the_motion_behind_a_motion_sync_of_krl_is_made_together(tmp_path: Path) -> None:
+    axes = "A2 -90,A3 90,A4 0,A5 45,A6 0"
+    text = "clearance_mm = 20\n"
+    for k, (name, far) in enumerate((("left", 20), ("right", 80))):
+        (tmp_path / f"{name}.src").write_text(
+            f'DEF {name}( )\nPTP {{A1 0,{axes}}}\nSYNCCMD(#MotionSync, "A", 3)\n'
+            f"PTP {{A1 {far},{axes}}}\nPTP {{A1 0,{axes}}}\nEND\n"
+        )
+        base = f"base = {{ xyz_mm = [{9000 * k}, 0, 0] }}"
+        (tmp_path / f"{name}.toml").write_text(f'robot = "kuka/kr30-3"\n{base}\n')
+        text += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.src"\n'
+    file = tmp_path / "station.toml"
+    file.write_text(text)
+    made = station(file)
+    assert any("make 1 move together" in str(note) for note in made.notes), made.notes
+    drives = {name: member.run for name, member in made.station.members.items()}
+    quick, slow = (run.timing.settled_durations()[-2] for run in drives.values())
+    assert quick < slow
+    ends = made.run.schedules["left"].end
+    assert ends == pytest.approx(drives["left"].duration + slow - quick, abs=1e-6)
