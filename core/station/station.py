@@ -13,6 +13,7 @@ from ..motion.emulator.run import Run
 from ..program.program import Program
 from .gates import Gate
 from .pace import Pace
+from .world_zones import WorldZone
 
 
 @dataclass(frozen=True, repr=False)
@@ -78,6 +79,7 @@ class RobotStation:
         clearance: m that robots must keep from each other.
         allowed: pairs of ``robot.thing`` that may touch.
         file: that it was read from.
+        zones: spaces with outputs.
     """
 
     members: Mapping[str, StationRobot]
@@ -88,6 +90,7 @@ class RobotStation:
     clearance: float = 0.0
     allowed: tuple[tuple[str, str], ...] = ()
     file: Path | None = None
+    zones: tuple[WorldZone, ...] = ()
 
     def __repr__(self) -> str:
         name = "" if self.file is None else f" {self.file.name}"

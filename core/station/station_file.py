@@ -5,7 +5,8 @@ See ``docs/reference/station.md`` for its keys.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from ..files.tables import LENGTH, TomlTable
 from .gates import Gate, GateKind, Input
 from .plc import PLC
 from .station import Wire, signal_key
+from .world_zones import WorldZone
 
 _DELAY = {"ms": 1e-3, "s": 1.0}
 _LONGEST = 60.0
@@ -53,6 +55,7 @@ class StationFile:
         clearance: m.
         allowed: pairs of ``robot.thing``.
         file: that it is.
+        zones: spaces with outputs.
     """
 
     members: tuple[MemberFile, ...]
@@ -63,6 +66,7 @@ class StationFile:
     clearance: float
     allowed: tuple[tuple[str, str], ...]
     file: Path
+    zones: tuple[WorldZone, ...] = ()
 
 
 def read_station_file(path: str | Path) -> StationFile:
@@ -95,6 +99,7 @@ def read_station_file(path: str | Path) -> StationFile:
         for pair in pairs
     ):
         raise allow.error("pairs", 'must be pairs of names, [["left.gun", "right.fixture"]]')
+    zones = tuple(_zone(name, table) for name, table in file.named_tables("zone").items())
     file.finish()
     names = {member.name.casefold() for member in members} | {PLC}
     made = StationFile(
@@ -106,6 +111,7 @@ def read_station_file(path: str | Path) -> StationFile:
         clearance,
         tuple((a, b) for a, b in pairs),
         Path(path),
+        zones,
     )
     _check_robots(made, names)
     return made
@@ -212,6 +218,45 @@ def _gate(table: TomlTable) -> Gate:
     return gate
 
 
+def _zone(name: str, table: TomlTable) -> WorldZone:
+    """``[zone.NAME]``: ``signal = "left.doInside"`` with a box, a ball or ranges of axes."""
+    robot, dot, signal = table.text("signal").partition(".")
+    if not dot or not signal.strip():
+        raise table.error("signal", "names an output of a robot: left.doInside")
+    corners = table.quantities("box", LENGTH, 6) if table.unit_key("box", LENGTH) else None
+    ball = table.quantities("ball", LENGTH, 4) if table.unit_key("ball", LENGTH) else None
+    axes = table.value("axes_deg") if table.has("axes_deg") else []
+    if corners is None and ball is None and not axes:
+        raise table.error("", "needs box_mm, ball_mm or axes_deg")
+    if not isinstance(axes, list) or not all(map(_is_range, axes)):
+        raise table.error("axes_deg", "holds the number of an axis with its range: [[1, -30, 30]]")
+    if ball is not None and ball[3] <= 0.0:
+        raise table.error("ball_mm", "is a centre and a radius above zero: [x, y, z, r]")
+    inside = table.flag("inside", True)
+    table.finish()
+    return WorldZone(
+        name,
+        robot.strip(),
+        signal.strip(),
+        inside,
+        None if corners is None else (_point(corners[:3]), _point(corners[3:])),
+        None if ball is None else (_point(ball[:3]), ball[3]),
+        tuple((int(k) - 1, math.radians(low), math.radians(high)) for k, low, high in axes),
+    )
+
+
+def _is_range(given: object) -> bool:
+    if not isinstance(given, list) or len(given) != 3:
+        return False
+    numbers = all(isinstance(v, int | float) and not isinstance(v, bool) for v in given)
+    return numbers and given[0] == int(given[0]) >= 1 and given[1] < given[2]
+
+
+def _point(given: Sequence[float]) -> tuple[float, float, float]:
+    x, y, z = given
+    return x, y, z
+
+
 def _inputs(table: TomlTable, key: str) -> tuple[Input, ...]:
     value = table.value(key)
     texts = value if isinstance(value, list) else [value]
@@ -229,6 +274,7 @@ def _check_robots(made: StationFile, names: set[str]) -> None:
         for name, gate in made.gates.items()
         for one in (*gate.inputs, *gate.resets)
     ]
+    told += [(f"zone.{zone.name}", f"{zone.robot}.{zone.signal}") for zone in made.zones]
     told += [("initial", name) for name in made.initial]
     told += [("given", name) for name in made.given]
     told += [("allow.pairs", name) for pair in made.allowed for name in pair]

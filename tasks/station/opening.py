@@ -47,6 +47,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     from ...core.station.station import RobotStation
     from ...core.station.station_file import read_station_file
     from ...core.station.synchronised import synchronised
+    from ...core.station.world_zones import on_at_start, with_zones
 
     file = read_station_file(source)
     members, actions, unknown, ids = {}, {}, [], {}
@@ -56,9 +57,13 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         members[member.name] = made
         speaks = setup.vendor.speaks
         words = None if speaks is None else speaks.signals
-        actions[member.name] = actions_of(made.run, words)
+        _check_axes(file, made)
+        actions[member.name] = with_zones(
+            actions_of(made.run, words), file.zones, member.name, made.run
+        )
         ids[member.name] = _ids(made, words)
-        for text, span in unknown_of(made.run, words, _looked_at(file, member.name)):
+        looked_at = _looked_at(file, member.name) - _zoned(file, member.name)
+        for text, span in unknown_of(made.run, words, looked_at):
             where = "" if span is None else f"{span}: "
             unknown.append(
                 Note(
@@ -78,11 +83,17 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         members,
         file.wires,
         file.gates,
-        file.initial,
+        file.initial
+        | {
+            f"{zone.robot}.{zone.signal}"
+            for zone in file.zones
+            if on_at_start(zone, members[zone.robot].run)
+        },
         file.given,
         file.clearance,
         file.allowed,
         file.file,
+        file.zones,
     )
     return OpenedStation(station, actions, tuple(unknown), shared.notes)
 
@@ -93,6 +104,23 @@ def _looked_at(file: StationFile, robot: str) -> set[str]:
     named += [one.name for gate in file.gates.values() for one in (*gate.inputs, *gate.resets)]
     parted = [name.partition(".") for name in named]
     return {rest.strip() for own, _, rest in parted if own.strip().casefold() == robot.casefold()}
+
+
+def _zoned(file: StationFile, robot: str) -> set[str]:
+    """Outputs of a robot that the file's zones set."""
+    return {zone.signal for zone in file.zones if zone.robot == robot}
+
+
+def _check_axes(file: StationFile, member: StationRobot) -> None:
+    """Zones watch axes that there are."""
+    size = member.cell.robot.size
+    for zone in file.zones:
+        beyond = [index + 1 for index, _, _ in zone.axes if index >= size]
+        if zone.robot == member.name and beyond:
+            raise InputError(
+                f"{file.file}: zone.{zone.name}: axes_deg: {member.name} has axes 1 to {size}, no "
+                f"axis {beyond[0]}"
+            )
 
 
 def _ids(member: StationRobot, words: SignalWords | None) -> IdOf | None:

@@ -31,6 +31,7 @@ from ....core.station.conflict_words import conflict_said
 from ....core.station.deadlock import deadlock
 from ....core.station.orders import Orders, explore
 from ....core.station.station import RobotStation
+from ....core.station.world_zones import with_zones
 from ..solve_round_verify import Beside
 
 _LATER = 1e-9
@@ -148,8 +149,12 @@ class StationFeasibility:
 
     def ordered_of(self, name: str, run: Run) -> tuple[Action, ...]:
         """The actions of a robot that bear on others, in another run of it."""
-        actions = {**self.state.actions, name: actions_of(run, self._words[name])}
-        return bearing(self.state.station, actions)[name]
+        station = self.state.station
+        actions = {**self.state.actions, name: self._actions(station, name, run)}
+        return bearing(station, actions)[name]
+
+    def _actions(self, station: RobotStation, name: str, run: Run) -> tuple[Action, ...]:
+        return with_zones(actions_of(run, self._words[name]), station.zones, name, run)
 
     def _with(self, name: str, run: Run) -> StationSnapshot:
         members = dict(self.state.station.members)
@@ -160,7 +165,7 @@ class StationFeasibility:
         actions = {
             name: before.actions[name]
             if before is not None and before.station.members[name].run is member.run
-            else actions_of(member.run, self._words[name])
+            else self._actions(station, name, member.run)
             for name, member in station.members.items()
         }
         ordered = bearing(station, actions)

@@ -489,3 +489,54 @@ def test_the_motion_behind_a_motion_sync_of_krl_is_made_together(tmp_path: Path)
     assert quick < slow
     ends = made.run.schedules["left"].end
     assert ends == pytest.approx(drives["left"].duration + slow - quick, abs=1e-6)
+
+
+AWAY = f"MoveAbsJ [[90,0,0,0,30,0],{UNUSED}], v1000, fine, tool0"
+
+
+@pytest.mark.parametrize(
+    "space", ["box_mm = [200, -300, 0, 900, 300, 1500]", "axes_deg = [[1, -60, 60]]"]
+)
+def test_a_world_zone_is_an_interlock_of_its_own(write: Write, space: str) -> None:
+    """Both turn to the place between them; no program sets the output that keeps them apart."""
+    programs = {
+        "one": [AWAY, "go 0", "WZDOSet \\Stat, wz1 \\Inside, box1, doInside, 1", AWAY],
+        "two": [AWAY, "WaitDI diInside,0", "go 0", AWAY],
+    }
+    rest = '[links]\n"one.doInside" = "two.diInside"\n[zone.middle]\nsignal = "one.doInside"\n'
+    rest += f"{space}\n"
+    made = station(write(programs, rest, gap=650.0))
+    entered, left = (a for a in made.actions["one"] if "middle" in a.text)
+    assert (entered.does.value, left.does.value) == (True, False)
+    assert entered.soonest < entered.time < left.time
+    assert made.orders is not None, made.notes
+    late = {
+        **programs,
+        "two": [*([AWAY] * 1), "WaitDI diInside,1", "WaitDI diInside,0", "go 0", AWAY],
+    }
+    made = station(write(late, rest, gap=650.0), no_proof=False)
+    waits = [spell for name, spell in made.waits() if name == "two"]
+    assert waits[-1].end == pytest.approx(
+        next(c.time for c in made.run.changes if not c.on), abs=1e-6
+    )
+    (pair,) = made.clearances
+    assert pair.in_time.proven and pair.safe
+
+
+@pytest.mark.parametrize(
+    ("rest", "words"),
+    [
+        ('signal = "one.doIn"\n', ("box_mm",)),
+        ('signal = "doIn"\nbox_mm = [0,0,0,1,1,1]\n', ("left.doInside",)),
+        ('signal = "three.doIn"\nbox_mm = [0,0,0,1,1,1]\n', ("three.doIn", "one, two")),
+        ('signal = "one.doIn"\naxes_deg = [[9, 0, 1]]\n', ("axes 1 to 6, no axis 9",)),
+        ('signal = "one.doIn"\naxes_deg = [[1, 5, 1]]\n', ("[[1, -30, 30]]",)),
+        ('signal = "one.doIn"\nball_mm = [0, 0, 0, 0]\n', ("radius",)),
+    ],
+)
+def test_bad_zones_are_refused(write: Write, rest: str, words: Sequence[str]) -> None:
+    file = write({"one": ["go 0", "go 1"], "two": ["go 0", "go 1"]}, f"[zone.z]\n{rest}")
+    with pytest.raises(FlybyError) as caught:
+        station(file)
+    for word in ("station.toml", *words):
+        assert word in str(caught.value), str(caught.value)
