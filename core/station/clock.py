@@ -12,7 +12,7 @@ from ..arrays import FloatArray
 from ..errors import InputError, Note
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
-from .pace import Pace
+from .pace import ClockPace
 from .plc import Plc
 from .station import RobotStation, levels_at_start, signal_key
 
@@ -54,7 +54,7 @@ class Schedule:
     end: float
     waits: tuple[Spell, ...]
     lag: float = 0.0
-    pace: Pace = field(default_factory=Pace.steady)
+    pace: ClockPace = field(default_factory=ClockPace.steady)
 
     def clocked(self, own: FloatArray) -> FloatArray:
         """The station's time of spans of the robot's own (L, 2) s: from when, until when."""
@@ -130,7 +130,7 @@ class _Robot:
     duration: float
     offset: float
     lag: float
-    pace: Pace
+    pace: ClockPace
     next: int = 0
     since: float | None = None
     waits: list[Spell] = field(default_factory=list)

@@ -11,7 +11,7 @@ from ..arrays import FloatArray
 
 
 @dataclass(frozen=True)
-class Pace:
+class ClockPace:
     """Stretches of a robot's own time that take longer.
 
     Args:
@@ -23,12 +23,12 @@ class Pace:
     clock: FloatArray
 
     @classmethod
-    def steady(cls) -> Pace:
+    def steady(cls) -> ClockPace:
         """As driven."""
         return cls(np.zeros(1), np.zeros(1))
 
     @classmethod
-    def slower(cls, spans: Sequence[tuple[float, float, float]]) -> Pace:
+    def slower(cls, spans: Sequence[tuple[float, float, float]]) -> ClockPace:
         """With spans that take longer.
 
         Args:

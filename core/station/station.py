@@ -12,7 +12,7 @@ from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
 from .gates import Gate
-from .pace import Pace
+from .pace import ClockPace
 from .world_zones import WorldZone
 
 
@@ -36,7 +36,7 @@ class StationRobot:
     cell: Cell
     run: Run
     begins: float = 0.0
-    pace: Pace = field(default_factory=Pace.steady)
+    pace: ClockPace = field(default_factory=ClockPace.steady)
 
     def __repr__(self) -> str:
         return in_line(

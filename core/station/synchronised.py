@@ -17,7 +17,7 @@ from ..motion.emulator.run import Run
 from ..program.signal import Meet
 from ..program.zone import Fine
 from .actions import Action
-from .pace import Pace
+from .pace import ClockPace
 
 IdOf = Callable[[int], str | None]
 """The id of a move by its index; None for none."""
@@ -69,7 +69,7 @@ class Synchronised:
         notes: what a user should know.
     """
 
-    paces: Mapping[str, Pace]
+    paces: Mapping[str, ClockPace]
     actions: dict[str, tuple[Action, ...]]
     notes: tuple[Note, ...]
 
@@ -126,7 +126,7 @@ def synchronised(
             if robot == name
         ]
         if spans:
-            paces[name] = Pace.slower(spans)
+            paces[name] = ClockPace.slower(spans)
     made = {
         name: tuple(sorted((*doings, *meets[name]), key=lambda action: action.time))
         for name, doings in actions.items()

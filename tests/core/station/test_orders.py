@@ -16,7 +16,7 @@ from flyby.core.station.awaited import bearing
 from flyby.core.station.clock import StationClock
 from flyby.core.station.gates import Gate, GateKind, Input
 from flyby.core.station.orders import explore
-from flyby.core.station.pace import Pace
+from flyby.core.station.pace import ClockPace
 from flyby.core.station.station import RobotStation, Wire
 
 Doings = dict[str, tuple[Action, ...]]
@@ -48,7 +48,7 @@ def station(programs: dict[str, list[Any]], **joined: Any) -> tuple[RobotStation
         name: SimpleNamespace(
             run=SimpleNamespace(duration=2.0 + len(doings), timing=SimpleNamespace(lag=0.0)),
             begins=0.0,
-            pace=Pace.steady(),
+            pace=ClockPace.steady(),
         )
         for name, doings in programs.items()
     }
