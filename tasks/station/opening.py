@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -95,7 +95,8 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         file.file,
         file.zones,
     )
-    return OpenedStation(station, actions, tuple(unknown), shared.notes)
+    notes = (*shared.notes, *_alone(actions), *_passed(actions, members))
+    return OpenedStation(station, actions, tuple(unknown), notes)
 
 
 def _looked_at(file: StationFile, robot: str) -> set[str]:
@@ -139,6 +140,48 @@ def _ids(member: StationRobot, words: SignalWords | None) -> IdOf | None:
         return together(reading.files[span.file].text[span.start : span.end])
 
     return found
+
+
+def _alone(actions: dict[str, tuple[Action, ...]]) -> Iterator[Note]:
+    """Meetings to which no other robot of the station comes."""
+    from ...core.program.signal import Meet
+
+    who: dict[str, set[str]] = {}
+    first: dict[str, Action] = {}
+    for name, doings in actions.items():
+        for action in doings:
+            if isinstance(action.does, Meet):
+                who.setdefault(action.does.label, set()).add(name)
+                first.setdefault(action.does.label, action)
+    for label, names in who.items():
+        if len(names) == 1:
+            action, (name,) = first[label], names
+            where = "" if action.span is None else f"{action.span}: "
+            yield Note(
+                f"{name}: {where}{action.text}: no other robot of the station comes to this "
+                "meeting: it is taken to wait for nobody"
+            )
+
+
+def _passed(
+    actions: dict[str, tuple[Action, ...]], members: dict[str, StationRobot]
+) -> Iterator[Note]:
+    """Waits behind a zone: the robot is taken to stop there, which controllers may not."""
+    from ...core.program.signal import WaitSignal
+    from ...core.program.zone import Fine
+
+    for name, doings in actions.items():
+        moves = members[name].program.moves
+        for action in doings:
+            if not isinstance(action.does, WaitSignal) or action.move < 0:
+                continue
+            if not isinstance(moves[action.move].zone, Fine):
+                where = "" if action.span is None else f"{action.span}: "
+                yield Note(
+                    f"{name}: {where}{action.text}: the move before it has a zone, and the robot "
+                    "is taken to stop there; a controller that finds the condition fulfilled in "
+                    "time passes through the zone: stop there (fine), so that what is proven holds"
+                )
 
 
 def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]:

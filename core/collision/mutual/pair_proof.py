@@ -294,6 +294,8 @@ class _Search:
             first, second = self._clocked(i, j)
             kept &= first[:, 0] <= second[:, 1] + meetings.apart
             kept &= second[:, 0] <= first[:, 1] + meetings.apart
+            # What comes behind a wait without end is never passed.
+            kept &= (first[:, 0] < math.inf) & (second[:, 0] < math.inf)
             if not meetings.every:
                 kept &= np.maximum(first[:, 0], second[:, 0]) - meetings.apart <= self._first
         if meetings.together is not None:

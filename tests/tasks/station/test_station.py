@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,47 +14,7 @@ from flyby.core.errors import FlybyError
 from flyby.core.station.clearances import StationProver
 from flyby.drawing.station import draw_station
 
-HOMES = ("[0,0,0,0,30,0]", "[20,0,0,0,30,0]", "[-20,0,0,0,30,0]")
-UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
-Write = Callable[..., Path]
-
-
-def module(name: str, statements: Sequence[str]) -> str:
-    """A RAPID module; ``go K`` in place of an instruction drives to the K-th home."""
-    lines = [
-        f"MoveAbsJ [{HOMES[int(s.split()[1])]},{UNUSED}], v1000, fine, tool0;"
-        if s.startswith("go ")
-        else f"{s};"
-        for s in statements
-    ]
-    body = "\n    ".join(lines)
-    return (
-        f"MODULE {name}\n  VAR syncident s1;\n  VAR syncident s2;\n"
-        '  PERS tasks all{2} := [["T1"],["T2"]];\n'
-        f"  PROC main()\n    {body}\n  ENDPROC\nENDMODULE\n"
-    )
-
-
-@pytest.fixture
-def write(tmp_path: Path) -> Write:
-    """Writes a station of robots far apart."""
-
-    def made(
-        programs: dict[str, Sequence[str]], rest: str = "", gap: float = 9000.0, before: str = ""
-    ) -> Path:
-        text = f"clearance_mm = 10\n{before}"
-        for k, (name, statements) in enumerate(programs.items()):
-            turned = "[0, 0, 0, 1]" if k % 2 else "[1, 0, 0, 0]"
-            base = f"{{ xyz_mm = [{k * gap}, 0, 0], quat_wxyz = {turned} }}"
-            cell = f'robot = "abb/irb120-3-058"\nbase = {base}\n'
-            (tmp_path / f"{name}.toml").write_text(cell)
-            (tmp_path / f"{name}.mod").write_text(module(name, statements))
-            text += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.mod"\n'
-        file = tmp_path / "station.toml"
-        file.write_text(text + rest)
-        return file
-
-    return made
+from .stations import HOMES, UNUSED, Write
 
 
 def station(file: Path, **options: object):
@@ -540,3 +500,15 @@ def test_bad_zones_are_refused(write: Write, rest: str, words: Sequence[str]) ->
         station(file)
     for word in ("station.toml", *words):
         assert word in str(caught.value), str(caught.value)
+
+
+def test_what_controllers_may_do_otherwise_is_noted(write: Write) -> None:
+    by = f"MoveAbsJ [{HOMES[1]},{UNUSED}], v1000, z50, tool0"
+    programs = {
+        "one": ["go 0", "SetDO doGo,1", "WaitSyncTask s1, all", "go 1"],
+        "two": ["go 0", by, "WaitDI diGo,1", "go 2"],
+    }
+    made = station(write(programs, '[links]\n"one.doGo" = "two.diGo"\n'))
+    notes = [str(note) for note in made.notes]
+    assert any("two.mod:8" in note and "stop there (fine)" in note for note in notes), notes
+    assert any("one.mod:8" in note and "comes to this meeting" in note for note in notes), notes
