@@ -13,6 +13,7 @@ from ..core.own_robots import keep_robot
 from ..core.registry import all_listed
 from ..core.robot_files import load_robot_file, names_file
 from ..tasks.catalogue import driver_of, registry, robot, vendor_of
+from ..tasks.new_vendor import new_vendor as make_vendor
 from .output.console import print_json, print_rich, print_table
 
 if TYPE_CHECKING:
@@ -42,6 +43,18 @@ def vendors(
             (("plugin, not loaded", "left"), ("from", "left"), ("because", "left")),
             [(one.plugin, one.distribution, str(one.error)) for one in broken],
         )
+
+
+def new_vendor(
+    name: Annotated[str, typer.Argument(help="Of the vendor, in lower case: acme.")],
+    folder: Annotated[
+        Path | None, typer.Option(help="What to make; without, flyby-NAME here.")
+    ] = None,
+) -> None:
+    """Write a plugin for another vendor, with a robot, a small language and its tests."""
+    written = make_vendor(name, folder)
+    for file in written:
+        print_rich(str(file))
 
 
 def robots(

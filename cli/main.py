@@ -38,6 +38,7 @@ COMMANDS = {
     "diff": "diff",
     "robots": "catalogue",
     "vendors": "catalogue",
+    "new-vendor": "catalogue",
     "fk": "kinematics",
     "ik": "kinematics",
 }
@@ -71,7 +72,7 @@ class _Imported(Mapping[str, TyperCommand]):
             module = import_module(f".{COMMANDS[name]}", __package__)
             alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
             settings = {"ignore_unknown_options": name in NUMBERS_MAY_BE_NEGATIVE}
-            command = getattr(module, f"{name}_" if iskeyword(name) else name)
+            command = getattr(module, f"{name}_" if iskeyword(name) else name.replace("-", "_"))
             alone.command(name, cls=Command, context_settings=settings)(command)
             self._made[name] = cast(TyperCommand, get_command(alone))
         return self._made[name]

@@ -422,6 +422,8 @@ class _Interpreter:
             return numbers, tuple(every)
         assert datum.index is not None
         index = self._values.number(datum.index)
+        if not index.is_integer():
+            raise SourceError("points have whole numbers", datum.span)
         key = datum.span.file, datum.word, int(index)
         point = self._program.points.get(key)
         text = f"{key[1]}[{key[2]}]"

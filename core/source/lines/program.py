@@ -136,7 +136,7 @@ def point_key(datum: Datum) -> tuple[str, int]:
         SourceError: its number is computed, or none.
     """
     value = getattr(datum.index, "value", None)
-    if isinstance(value, bool) or not isinstance(value, float) or value != int(value):
+    if isinstance(value, bool) or not isinstance(value, float) or not value.is_integer():
         raise SourceError("a point that is defined has a whole number", datum.span)
     return datum.word, int(value)
 

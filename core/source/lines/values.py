@@ -154,6 +154,8 @@ class Values:
             found = COMPUTE[expression.word](*values)
         except ZeroDivisionError:
             raise SourceError("a division by zero", expression.span) from None
+        except (OverflowError, ValueError):
+            raise SourceError("its value is no number that there is", expression.span) from None
         return found if isinstance(found, bool) else float(found)
 
     @staticmethod
@@ -191,7 +193,7 @@ class Values:
             index = self.value(part)
             if isinstance(index, Unknown):
                 return None
-            if isinstance(index, bool) or index != int(index):
+            if isinstance(index, bool) or not float(index).is_integer():
                 raise SourceError(f"{datum.word} has whole numbers", datum.span)
             numbers.append(str(int(index)))
         return f"{datum.word}[{','.join(numbers)}]"
