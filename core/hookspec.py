@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 GROUP = "flyby"
 API = 1
-"""Version of all that plugins are built on: this hook, `Vendor` and what its parts get and give, and
+"""Version of all that plugins are built on: this hook, `Vendor` and what its parts get and give,
 `flyby.core.source.lines`. It rises with every change that a plugin must follow."""
 
 hookspec = pluggy.HookspecMarker(GROUP)

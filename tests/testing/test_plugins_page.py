@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import tomllib
+from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -37,7 +38,7 @@ def page() -> ModuleType:
 
 def test_every_block_is_of_a_language_that_is_tested() -> None:
     assert len(re.findall(r"^```\w*$", PAGE, re.MULTILINE)) == 2 * (
-        len(blocks("python")) + len(blocks("toml"))
+        len(blocks("python")) + len(blocks("toml")) + len(blocks("text"))
     )
     assert len(blocks("python")) >= 7
 
@@ -68,13 +69,27 @@ def test_the_suite_of_the_page_is_the_suite(page: ModuleType) -> None:
 
 def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:
     acme = page.acme()
-    text = "0.5 0.1 0.2 0.0 0.9 0.0 0.25\n"
-    assert dict(acme.write(acme.read(text, "a.acme"), acme.robot("swift-6"))) == {"main.acme": text}
-    with pytest.raises(SourceError, match=r"a\.acme:2:1"):
-        acme.read(text + "1 2 x\n", "a.acme")
+    robot = acme.robot("swift-6")
+    text = "POINT P[1] 0 10 20 0 50 0\nMOVEJ P[1] 50 STOP\n"
+    program = acme.read(text, "a.acme")
+    assert dict(acme.write(program, robot)) == {"main.acme": text}
+    (move,) = program.moves
+    changed = program.with_moves((replace(move, zone=page.PASS.sized(0.3)),))
+    (file,) = acme.patch(changed, robot).values()
+    assert file.text == text.replace("STOP", "PASS 30")
+    with pytest.raises(SourceError, match=r"a\.acme:3:1"):
+        acme.read(text + "LEAP\n", "a.acme")
     with pytest.raises(InputError, match="absent"):
         acme.read_file("absent.acme")
     assert page.Elbow(True).mismatch(page.Elbow(False)) == 1.0
+
+
+def test_the_language_of_the_page_is_that_of_the_skeleton() -> None:
+    skeleton = (ROOT / "testing" / "skeleton" / "language.py.txt").read_text("utf-8")
+    skeleton = skeleton.replace("@NAME@", "ACME").replace("@name@", "acme")
+    own = [block for block in blocks("python") if block in skeleton]
+    assert len(own) >= 7
+    assert sum(map(len, own)) > 0.9 * len(skeleton)
 
 
 def test_every_part_and_every_method_of_the_suite_is_told() -> None:

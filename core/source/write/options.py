@@ -66,6 +66,22 @@ class PatcherOptions:
         return chosen(cls, options, patcher)
 
 
+@dataclass(frozen=True, slots=True)
+class WriterOptions:
+    """How a program is written in a language that has no choices of its own.
+
+    Args:
+        opaque: what becomes of what was kept as text.
+    """
+
+    opaque: OpaqueStyle = OpaqueStyle.KEEP
+
+    @classmethod
+    def of(cls, options: Mapping[str, str], writer: str) -> WriterOptions:
+        """From options by name; see `chosen`."""
+        return chosen(cls, options, writer)
+
+
 def chosen(kind: type[Options], options: Mapping[str, str], part: str, **others: object) -> Options:
     """The options of a writer or patcher, from those of its fields that are choices.
 

@@ -25,7 +25,7 @@ from flyby.core.source.patch.edits import Edit
 from flyby.core.source.patch.uses import MovePart, Use, UseKind
 from flyby.core.source.reading import Files, ReadOptions, read_with
 from flyby.core.source.text.files import SourceFile
-from flyby.core.source.write.options import OpaqueStyle, PatcherOptions
+from flyby.core.source.write.options import OpaqueStyle, PatcherOptions, WriterOptions
 from flyby.core.source.write.refusals import check_said
 
 from .dialect import TP
@@ -33,11 +33,9 @@ from .grammar import Grammar, lines
 from .moves import Place, numbers_of
 from .record import logger
 from .writer import (
-    TpOptions,
     Writer,
     amount,
     number,
-    options_of,
     program_name,
     speed_text,
     zone_text,
@@ -70,7 +68,7 @@ class Language:
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer`; the option is ``opaque``."""
         name = program_name(program)
-        return {f"{name}.ls": Writer(options_of(dict(options))).text(program, name)}
+        return {f"{name}.ls": Writer(WriterOptions.of(options, "TP writer")).text(program, name)}
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `flyby.core.language.Patcher`."""
@@ -82,7 +80,7 @@ class Language:
         name = program_name(program)
         log = logger(robot, period)
         writer = Writer(
-            TpOptions(OpaqueStyle.COMMENT),
+            WriterOptions(OpaqueStyle.COMMENT),
             ("  RUN FLYBY_LOG", "  WAIT .5(sec)"),
             ("  WAIT .5(sec)", "  FLG[1]=OFF"),
         )

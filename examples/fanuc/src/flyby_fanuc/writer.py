@@ -15,7 +15,7 @@ from flyby.core.program.target import JointTarget, PoseTarget, Target
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import VendorZone, Zone
 from flyby.core.source.write.numbering import Numbering
-from flyby.core.source.write.options import OpaqueStyle, chosen
+from flyby.core.source.write.options import OpaqueStyle, WriterOptions
 from flyby.core.source.write.refusals import check_said
 from flyby.core.source.write.statements import lines_of_statements
 from flyby.core.spatial.pose import Pose
@@ -37,13 +37,6 @@ _SCRATCH = 100
 """The position register that frames go through."""
 _REMARK = 32
 """Characters of a remark."""
-
-
-@dataclass(frozen=True, slots=True)
-class TpOptions:
-    """``opaque``: what becomes of what was kept as text."""
-
-    opaque: OpaqueStyle = OpaqueStyle.KEEP
 
 
 def number(value: float) -> str:
@@ -100,7 +93,7 @@ def position(index: int, target: Target, frames: tuple[str, str]) -> str:
 class Writer:
     """Writes one program."""
 
-    options: TpOptions
+    options: WriterOptions
     before: tuple[str, ...] = ()
     after: tuple[str, ...] = ()
     positions: list[str] = field(default_factory=list)
@@ -191,9 +184,3 @@ def program_name(program: Program) -> str:
     """A name that TP takes: 36 letters, digits and ``_`` at most."""
     name = re.sub(r"\W+", "_", program.name, flags=re.ASCII).upper()[:36]
     return name if name[:1].isalpha() else f"P_{name}"[:36]
-
-
-def options_of(options: dict[str, str]) -> TpOptions:
-    """From options by name."""
-    found: TpOptions = chosen(TpOptions, options, "TP writer")
-    return found
