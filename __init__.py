@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from flyby.tasks.diff.diff import diff
     from flyby.tasks.emulate import emulate
     from flyby.tasks.experiment import experiment
-    from flyby.tasks.free_motion import free_motion
+    from flyby.tasks.free_motion.free_motion import free_motion
+    from flyby.tasks.free_motion.tune import tune
     from flyby.tasks.identify import identify
     from flyby.tasks.optimize import optimize
     from flyby.tasks.pages.show import report, show
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from flyby.tasks.station.station import station
     from flyby.tasks.station.zones import station_zones
     from flyby.tasks.translate import translate
-    from flyby.tasks.tune import tune
     from flyby.tasks.write import patch, write
     from flyby.tasks.zones import zones
 
@@ -78,6 +78,7 @@ __all__ = [
 _ELSEWHERE = {
     "cell": "catalogue",
     "diff": "diff.diff",
+    "free_motion": "free_motion.free_motion",
     "open_backup": "backup.opening",
     "place": "station.place",
     "patch": "write",
@@ -89,6 +90,7 @@ _ELSEWHERE = {
     "station_check": "station.check",
     "station_optimize": "station.optimize",
     "station_zones": "station.zones",
+    "tune": "free_motion.tune",
 }
 """Files of `flyby.tasks` that are not called as what they hold."""
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
-from ..tasks.free_motion import FreeMotionOptions, free_motion_with
+from ..tasks.free_motion.free_motion import FreeMotionOptions, free_motion_with
+from ..tasks.free_motion.tune import TuneOptions, tune_with
 from ..tasks.read import SourceOptions, read_with
-from ..tasks.tune import TuneOptions, tune_with
 from .output.console import print_json, print_rich, print_table, progress, warn, warn_of
 from .parameters import AsJson, Force, ProgramFile, with_options
 

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.door import given, spelt
-from ..core.errors import OptionError
-from .changes import joint_indices, weight
-from .options.entries import COUNT, POSITIVE, TIME, Extent, number, value
-from .options.keywords import by_keywords
-from .options.texts import configuration
-from .pareto import consumption_of
-from .setup import CellOptions, Setup, setup_of
+from ...core.door import given, spelt
+from ...core.errors import OptionError
+from ..changes import joint_indices, weight
+from ..options.entries import COUNT, POSITIVE, TIME, Extent, number, value
+from ..options.keywords import by_keywords
+from ..options.texts import configuration
+from ..pareto import consumption_of
+from ..setup import CellOptions, Setup, setup_of
 
 if TYPE_CHECKING:
-    from ..core.motion.model.consumption import Consumption
-    from ..core.program.tool import Tool
-    from ..problems.free_motion.optimal_control import SearchStep, Surroundings
-    from .results.motions import FreeMotion
+    from ...core.motion.model.consumption import Consumption
+    from ...core.program.tool import Tool
+    from ...problems.free_motion.optimal_control import SearchStep, Surroundings
+    from ..results.motions import FreeMotion
 
 MOST_TRIALS = 16
 
@@ -85,14 +85,14 @@ def free_motion_with(
         MotionError: a configuration or the path to begin with collides, or no motion within the
             limits was found.
     """
-    from ..core.robot.inertia import carried_inertia
-    from ..problems.free_motion.optimal_control import (
+    from ...core.robot.inertia import carried_inertia
+    from ...problems.free_motion.optimal_control import (
         MotionEffort,
         MotionObjective,
         MotionTask,
         optimize,
     )
-    from .results.motions import FreeMotion
+    from ..results.motions import FreeMotion
 
     setup = setup_of(options)
     robot = setup.robot
@@ -125,7 +125,7 @@ free_motion = by_keywords(free_motion_with, FreeMotionOptions)
 
 
 def _tool(setup: Setup, name: str | None) -> Tool:
-    from ..core.program.tool import FLANGE
+    from ...core.program.tool import FLANGE
 
     if name is None:
         return FLANGE
@@ -138,8 +138,8 @@ def _tool(setup: Setup, name: str | None) -> Tool:
 
 def _surroundings(setup: Setup, tool: Tool, *, no_floor: bool) -> Surroundings | None:
     """What to keep clear of; nothing where not even the shape of the arm is known."""
-    from ..core.collision.scene.scene import CollisionScene
-    from ..problems.free_motion.optimal_control import Surroundings
+    from ...core.collision.scene.scene import CollisionScene
+    from ...problems.free_motion.optimal_control import Surroundings
 
     cell = setup.surroundings(no_floor=no_floor)
     if setup.cell is None and not setup.robot.shapes:

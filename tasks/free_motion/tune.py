@@ -7,22 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.display import counted
-from ..core.door import spelt
-from ..core.errors import InputError, OptionError
-from .changes import weight
-from .options import texts
-from .options.entries import POSITIVE, TIME, number, switch, value
-from .options.keywords import by_keywords
-from .pareto import consumption_of
-from .setup import RobotOptions, controller_of, start_of, with_setup
+from ...core.display import counted
+from ...core.door import spelt
+from ...core.errors import InputError, OptionError
+from ..changes import weight
+from ..options import texts
+from ..options.entries import POSITIVE, TIME, number, switch, value
+from ..options.keywords import by_keywords
+from ..pareto import consumption_of
+from ..setup import RobotOptions, controller_of, start_of, with_setup
 
 if TYPE_CHECKING:
-    from ..core.arrays import FloatArray
-    from ..core.motion.model.consumption import Consumption
-    from ..core.program.program import Program
-    from ..core.robot.model import Robot
-    from .results.motions import TunedMotion
+    from ...core.arrays import FloatArray
+    from ...core.motion.model.consumption import Consumption
+    from ...core.program.program import Program
+    from ...core.robot.model import Robot
+    from ..results.motions import TunedMotion
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,14 +66,14 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
         InputError: naming the option, or torques are wanted and not known.
         MotionError: the program cannot be driven, or no motion within the limits is short enough.
     """
-    from ..problems.free_motion.velocity_tuning import (
+    from ...problems.free_motion.velocity_tuning import (
         FixedPath,
         TuningObjective,
         TuningTask,
         drives_of,
         tune,
     )
-    from .results.motions import TunedMotion
+    from ..results.motions import TunedMotion
 
     program, setup = with_setup(program, options)
     controller = controller_of(program, setup)
