@@ -24,7 +24,7 @@ from .servo import FrictionMemory, transient_at
 from .smoothing import STEP, JointMotion, Smoothing, States, even_times, knot_step
 from .trajectory import Leads, no_leads, sample_times
 
-_STRETCH = 20.0
+_STRETCH = 30.0
 """s that are looked at together."""
 _ASIDE = 20
 """Steps: of a cubic spline's values, those n steps away count (2 − √3)ⁿ, here 4e-12."""
@@ -77,8 +77,8 @@ def commanded_motion(
             first = min(first, friction.known_to)
         # What `lead_states_at` averages may begin two steps before.
         stamped = stamped_motion(timing, first - smoothing.window - 2 * step, end)
-        smooth = smoothing.command(stamped, t[part])
-        q[part], dq[part], ddq[part] = smooth
+        own = None if needs_jerk else (q[part], dq[part], ddq[part])
+        smooth = smoothing.command(stamped, t[part], own)
         offs = [] if friction is None else [friction.over(stamped, t[part], smooth)]
         if lead is not None or needs_jerk:
             even = even_times(max(begin, 0.0), min(end, timing.duration), step)
@@ -90,11 +90,11 @@ def commanded_motion(
                 offs.append(transient_at(servo, smoothing, stamped, t[part], smooth, jerk))
         if lead is not None:
             led = lead_states_at(elasticity, robot, smoothing, stamped, even, known, t[part])
-            for made, own in zip(lead, led, strict=True):
-                made[part] = own
+            for made, of in zip(lead, led, strict=True):
+                made[part] = of
         for off in offs:
-            for links, own in zip((q, dq, ddq), off, strict=True):
-                links[part] += own
+            for links, by in zip((q, dq, ddq), off, strict=True):
+                links[part] += by
     return CommandedMotion((q, dq, ddq), lead, sigma)
 
 

@@ -28,18 +28,18 @@ that they drive.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from ...arrays import BoolArray, FloatArray
 from ...errors import InputError
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ...robot.model import Robot
 from ..model.elasticity import Elasticity
 from ..model.point_masses import filled, mass_loads
-from .smoothing import JointMotion, Smoothing, States, even_times
+from .smoothing import JointMotion, Smoothing, States, even_times, interpolate_at
 
 _FINEST, _COARSEST = 1e-3, 4e-3
 """s between the times at which leads are worked out, between which they are cubic: a 16th of what
@@ -159,25 +159,14 @@ def lead_states(
     """
     given, used = _gears(elasticity, robot, *states)
     size = given.shape[1]
-    stiff = derivatives_of(t, given, at)
-    lead = [part @ mixture(elasticity, robot, size).T for part in stiff]
-    loose, slack = _slack(elasticity, size)
-    if loose.any():
-        before = derivatives_of(t, used[:, loose], at)
-        after = [low + high[:, loose] for low, high in zip(before, stiff, strict=True)]
-        for k, most in enumerate(_slack_states(slack, after)):
-            lead[k][:, loose] += most
-        for k, least in enumerate(_slack_states(slack, before)):
-            lead[k][:, loose] -= least
-    return lead[0], lead[1], lead[2]
-
-
-def _slack_states(slack: FloatArray, states: Sequence[FloatArray]) -> States:
-    """s tanh(l / s) and two derivatives in time, of l with two derivatives (T, L)."""
-    lead, change, bend = states
-    bent = np.tanh(lead / slack)
-    slope = 1.0 - bent**2
-    return slack * bent, slope * change, slope * bend - 2.0 * bent * slope / slack * change**2
+    stiff, slack = _spline(t, given), filled(elasticity.slack, size)
+    held = _spline(t, used) if slack.any() else stiff
+    shape = len(at), size
+    lead, change, bend = np.empty(shape), np.empty(shape), np.empty(shape)
+    mixed = mixture(elasticity, robot, size)
+    own, rest = (stiff.q, stiff.dq), (held.q, held.dq)
+    _fill_leads(t, *own, *rest, at, mixed, slack, np.empty((2, 3, size)), lead, change, bend)
+    return lead, change, bend
 
 
 def _slack(elasticity: Elasticity, size: int) -> tuple[BoolArray, FloatArray]:
@@ -193,9 +182,12 @@ def _gears(
     masses = [(mass.joint, mass.lead) for mass in elasticity.carried]
     loads = mass_loads(robot, masses, "elasticity.carried", q, dq, ddq)
     size = q.shape[1]
-    given = filled(elasticity.own, size) * ddq + loads.across
-    sprung = filled(elasticity.spring, size) * np.sin(q)
-    return given, sprung - filled(elasticity.weight, size) * loads.held
+    given = filled(elasticity.own, size) * ddq
+    given += loads.across
+    used = -filled(elasticity.weight, size) * loads.held
+    for joint in np.flatnonzero(elasticity.spring[:size]):
+        used[:, joint] += elasticity.spring[joint] * np.sin(q[:, joint])
+    return given, used
 
 
 def links_of(elasticity: Elasticity, states: States, jerk: FloatArray) -> States:
@@ -242,6 +234,59 @@ def _spline(t: FloatArray, values: FloatArray) -> JointMotion:
     if len(t) > 2:
         _fill_slopes(values, float(t[1] - t[0]), slopes, np.zeros(len(values)))
     return JointMotion(t, values, slopes)
+
+
+@lean
+def _fill_leads(
+    t: FloatArray,
+    given: FloatArray,
+    given_slopes: FloatArray,
+    used: FloatArray,
+    used_slopes: FloatArray,
+    at: FloatArray,
+    mixed: FloatArray,
+    slack: FloatArray,
+    work: FloatArray,
+    lead: FloatArray,
+    change: FloatArray,
+    bend: FloatArray,
+) -> None:
+    """`lead_states` of what stiffness alone gives and what is used at rest, (S, N) at times t."""
+    size, k = slack.size, -1
+    own, held = work[0], work[1]
+    for i in range(at.size):
+        k = interpolate_at(t, given, given_slopes, at[i], k, own)
+        for j in range(size):
+            for n in range(3):
+                held[n, j] = 0.0
+            for b in range(size):
+                share = mixed[j, b]
+                if share != 0.0:
+                    for n in range(3):
+                        held[n, j] += share * own[n, b]
+            lead[i, j], change[i, j], bend[i, j] = held[0, j], held[1, j], held[2, j]
+        interpolate_at(t, used, used_slopes, at[i], k, held)
+        for j in range(size):
+            if slack[j] > 0.0:
+                before = _loose(slack[j], held[0, j], held[1, j], held[2, j])
+                after = _loose(
+                    slack[j], held[0, j] + own[0, j], held[1, j] + own[1, j], held[2, j] + own[2, j]
+                )
+                lead[i, j] += after[0] - before[0]
+                change[i, j] += after[1] - before[1]
+                bend[i, j] += after[2] - before[2]
+
+
+@inner
+def _loose(slack: float, lead: float, change: float, bend: float) -> tuple[float, float, float]:
+    """s tanh(l / s) and two derivatives in time, of l with two derivatives."""
+    bent = math.tanh(lead / slack)
+    slope = 1.0 - bent * bent
+    return (
+        slack * bent,
+        slope * change,
+        slope * bend - 2.0 * bent * slope / slack * change * change,
+    )
 
 
 @lean

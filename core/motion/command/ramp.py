@@ -39,6 +39,9 @@ class _Way(NamedTuple):
     Args:
         since, until: (K,) s, when each is entered and left, as driven.
         slope: (S,), dλ/dℓ at the samples.
+        speed: (K,), dℓ/dt where each is entered.
+        change: (K,), half of d²ℓ/dt².
+        bend: (K,), half of d²λ/dℓ².
         covered: (K + 1,) m, λ where each is entered, from the first on.
         area: (K,) m s, its integral over time until then.
     """
@@ -46,6 +49,9 @@ class _Way(NamedTuple):
     since: FloatArray
     until: FloatArray
     slope: FloatArray
+    speed: FloatArray
+    change: FloatArray
+    bend: FloatArray
     covered: FloatArray
     area: FloatArray
 
@@ -75,11 +81,15 @@ def ramped(
     part = part._replace(sample=part.sample - left)
     states = states.rows(left, left + int(part.sample[-1]) + 2)
     slope = way_slopes(states)
-    covered = 0.5 * part.spacing * (slope[part.sample] + slope[part.sample + 1])
+    enters, leaves = slope[part.sample], slope[part.sample + 1]
+    covered = 0.5 * part.spacing * (enters + leaves)
     way = _Way(
         start.driven(part.begin),
         start.driven(part.end),
         slope,
+        np.sqrt(part.x[:-1]),
+        np.diff(part.x) / (4.0 * part.spacing),
+        0.5 * (leaves - enters) / part.spacing,
         np.concatenate([[0.0], np.cumsum(covered)]),
         np.zeros(len(covered)),
     )
@@ -136,9 +146,8 @@ def _covered(
     """λ covered in interval k until a driven time, and its integral over stamped time."""
     since = stamped_time(t, starts, length) - n.begin[k]
     tau = min(max(since, 0.0), n.end[k] - n.begin[k])
-    speed, change = n.x[k] ** 0.5, (n.x[k + 1] - n.x[k]) / (4.0 * n.spacing[k])
+    speed, change, bend = way.speed[k], way.change[k], way.bend[k]
     first = way.slope[n.sample[k]]
-    bend = 0.5 * (way.slope[n.sample[k] + 1] - first) / n.spacing[k]
     # ℓ = τ (v + c τ), λ = s ℓ + b ℓ².
     way_on = tau * (speed + change * tau)
     square = speed * speed / 3.0 + tau * change * (0.5 * speed + 0.2 * change * tau)

@@ -14,11 +14,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import FloatArray
-from ...robot.kinematics.lean import inner, lean
+from ...robot.kinematics.lean import inlined, inner, lean
 from ..model.motion_model import MotionModel
 
 States = tuple[FloatArray, FloatArray, FloatArray]
@@ -30,6 +31,7 @@ _FINEST = 2.5e-4
 _KNOTS = 16
 _SLACK = 1e-6
 """Share of a step by which times may be off through rounding."""
+_NOT_WANTED = np.empty((0, 0))
 
 
 def smoothing_at(model: MotionModel, jerk_fraction: float, joint_moves: bool = False) -> Smoothing:
@@ -86,16 +88,16 @@ class JointMotion:
         _fill_areas(self.t, self.q, self.dq, areas)
         return areas
 
-    def at(self, t: FloatArray) -> States:
+    def at(self, t: FloatArray, out: States | None = None) -> States:
         """Positions, velocities and accelerations (T, N) at times (T,) that do not decrease."""
-        out = _empty(len(t), self.q.shape[1])
+        out = out or _empty(len(t), self.q.shape[1])
         q, dq = np.ascontiguousarray(self.q), np.ascontiguousarray(self.dq)
-        _interpolate(self.t, q, dq, t, *out)
+        _interpolate(self.t, q, dq, t, np.empty((3, q.shape[1])), *out)
         return out
 
-    def averaged(self, window: float, t: FloatArray) -> States:
+    def averaged(self, window: float, t: FloatArray, out: States | None = None) -> States:
         """The same of the mean over the last ``window`` > 0 seconds."""
-        out = _empty(len(t), self.q.shape[1])
+        out = out or _empty(len(t), self.q.shape[1])
         _average(self.t, self.q, self.dq, self.areas, window, t, *out)
         return out
 
@@ -130,42 +132,38 @@ class Smoothing:
         widths = sorted(self.widths) or [0.0]
         return Smoothing((*widths[:-1], max(widths[-1], width)))
 
-    def command(self, motion: JointMotion, t: FloatArray) -> States:
+    def command(self, motion: JointMotion, t: FloatArray, out: States | None = None) -> States:
         """The smoothed motion.
 
         Args:
             motion: what was stamped.
             t: (T,) s, not decreasing.
+            out: (T, N) each, written and returned; None for new ones.
 
         Returns:
             Positions, velocities and accelerations (T, N).
         """
         if not self.widths:
-            return motion.at(t)
+            return motion.at(t, out)
         step = knot_step(min(self.widths))
         # The longest last: what the others leave is then resolved best.
         *first, last = sorted(self.widths)
         for width in first:
             motion = averaged(motion, width, step)
-        return motion.averaged(last, t)
+        return motion.averaged(last, t, out)
 
 
 def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
     """The mean over the last ``window`` seconds of a motion, by knots ``step`` apart."""
     if (window, step) not in motion.means:
-        motion.means[window, step] = _averaged(motion, window, step)
+        if motion.step == step:
+            t = motion.t[0] + step * np.arange(len(motion.t) + int(np.ceil(window / step)))
+        else:
+            t = even_times(motion.t[0], motion.t[-1] + window, step)
+        q, dq = (np.empty((len(t), motion.q.shape[1])) for _ in range(2))
+        _average(motion.t, motion.q, motion.dq, motion.areas, window, t, q, dq, _NOT_WANTED)
+        motion.means[window, step] = JointMotion(t, q, dq, step)
     return motion.means[window, step]
-
-
-def _averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
-    if motion.step != step:
-        t = even_times(motion.t[0], motion.t[-1] + window, step)
-        q, dq, _ = motion.averaged(window, t)
-        return JointMotion(t, q, dq, step)
-    count = len(motion.t) + int(np.ceil(window / step))
-    q, dq = np.empty((count, motion.q.shape[1])), np.empty((count, motion.q.shape[1]))
-    _average_evenly(motion.q, motion.dq, motion.areas, window, step, q, dq)
-    return JointMotion(motion.t[0] + step * np.arange(count), q, dq, step)
 
 
 def even_times(begin: float, end: float, step: float) -> FloatArray:
@@ -197,61 +195,94 @@ def _forward(t: FloatArray, at: float, k: int) -> int:
     return k
 
 
-@inner
-def _cubic(
-    t: FloatArray, q: FloatArray, dq: FloatArray, k: int, at: float, j: int
-) -> tuple[float, float, float, float]:
-    """∫ (q − q₀) dt from knot k, q, q̇ and q̈ of joint j at a time in interval k."""
+class _Cubic(NamedTuple):
+    """What weighs values and slopes of knots k and n about a time, of all joints alike.
+
+    Args:
+        k, n: the knots.
+        rise, v0, v1: of the position there, beside that of knot k: the way to n, and the slopes.
+        rate, d0, d1: of the velocity, likewise.
+        since, area, b0, b1: of ∫ (q − q₀) dt from knot k: its rest, the way to n, and the slopes.
+    """
+
+    k: int
+    n: int
+    rise: float
+    v0: float
+    v1: float
+    rate: float
+    d0: float
+    d1: float
+    since: float
+    area: float
+    b0: float
+    b1: float
+
+
+@inlined
+def _cubic(t: FloatArray, k: int, at: float) -> _Cubic:
+    """At a time in interval k; at rest before all knots (k = -1) and after them."""
     if k < 0:
-        return 0.0, q[0, j], 0.0, 0.0
-    rest = q[k, j] - q[0, j]
+        return _Cubic(0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     tau = at - t[k]
     if k + 1 >= t.size:
-        return tau * rest, q[k, j], 0.0, 0.0
+        return _Cubic(k, k, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, tau, 0.0, 0.0, 0.0)
     h = t[k + 1] - t[k]
     z = tau / h
-    v0, v1, d = h * dq[k, j], h * dq[k + 1, j], q[k + 1, j] - q[k, j]
-    c2, c3 = 3 * d - 2 * v0 - v1, v0 + v1 - 2 * d
-    area = tau * (rest + z * (v0 / 2 + z * (c2 / 3 + z * c3 / 4)))
-    position = q[k, j] + z * (v0 + z * (c2 + z * c3))
-    return area, position, (v0 + z * (2 * c2 + z * 3 * c3)) / h, (2 * c2 + 6 * z * c3) / h**2
+    y, square = 1.0 - z, z * z
+    return _Cubic(
+        k,
+        k + 1,
+        square * (3.0 - 2.0 * z),
+        tau * y * y,
+        -tau * z * y,
+        6.0 * z * y / h,
+        y * (1.0 - 3.0 * z),
+        z * (3.0 * z - 2.0),
+        tau,
+        tau * square * (1.0 - 0.5 * z),
+        tau * tau * (0.5 - z * (2.0 / 3.0 - 0.25 * z)),
+        tau * tau * z * (0.25 * z - 1.0 / 3.0),
+    )
 
 
-@lean
-def _average_evenly(
-    q: FloatArray,
-    dq: FloatArray,
-    area: FloatArray,
-    window: float,
-    step: float,
-    position: FloatArray,
-    velocity: FloatArray,
-) -> None:
-    """`_average` at the knots and on, a step apart: cubics are weighed alike at all of them."""
-    count, size = q.shape
-    behind = window / step
-    back = int(np.ceil(behind))
-    z = back - behind
-    # Values and slopes to either side of the place a window ago, and their integrals up to it.
-    w0, w1 = 1 - z * z * (3 - 2 * z), z * z * (3 - 2 * z)
-    v0, v1 = step * z * (1 - z) ** 2, -step * z * z * (1 - z)
-    a0, a1 = step * z * (1 - z * z * (1 - z / 2)), step * z**3 * (1 - z / 2)
-    b0 = step**2 * z * z * (0.5 - z * (2 / 3 - z / 4))
-    b1 = -(step**2) * z**3 * (1 / 3 - z / 4)
-    for i in range(position.shape[0]):
-        now, over = min(i, count - 1), step * max(i - count + 1, 0)
-        s = i - back
-        for j in range(size):
-            rest = q[0, j]
-            whole = area[now, j] + over * (q[now, j] - rest)
-            before = rest
-            if s >= 0:
-                n = min(s + 1, count - 1)
-                before = w0 * q[s, j] + w1 * q[n, j] + v0 * dq[s, j] + v1 * dq[n, j]
-                whole -= area[s, j] + a0 * (q[s, j] - rest) + a1 * (q[n, j] - rest)
-                whole -= b0 * dq[s, j] + b1 * dq[n, j]
-            position[i, j] = rest + whole / window
-            velocity[i, j] = (q[now, j] - before) / window
+@inlined
+def _position(w: _Cubic, q: FloatArray, dq: FloatArray, j: int) -> float:
+    way = q[w.n, j] - q[w.k, j]
+    found: float = q[w.k, j] + (w.rise * way + w.v0 * dq[w.k, j] + w.v1 * dq[w.n, j])
+    return found
+
+
+@inlined
+def _velocity(w: _Cubic, q: FloatArray, dq: FloatArray, j: int) -> float:
+    found: float = w.rate * (q[w.n, j] - q[w.k, j]) + w.d0 * dq[w.k, j] + w.d1 * dq[w.n, j]
+    return found
+
+
+@inlined
+def _area(w: _Cubic, q: FloatArray, dq: FloatArray, j: int) -> float:
+    rest = w.since * (q[w.k, j] - q[0, j]) + w.area * (q[w.n, j] - q[w.k, j])
+    found: float = rest + w.b0 * dq[w.k, j] + w.b1 * dq[w.n, j]
+    return found
+
+
+@inlined
+def interpolate_at(
+    t: FloatArray, q: FloatArray, dq: FloatArray, at: float, k: int, out: FloatArray
+) -> int:
+    """Write position, velocity and acceleration (3, N) at a time, with its interval k searched from
+    one that begins before; returns that."""
+    k = _forward(t, at, k)
+    w = _cubic(t, k, at)
+    bend = e0 = e1 = 0.0
+    if w.n > w.k:
+        h = t[w.n] - t[w.k]
+        z = w.since / h
+        bend, e0, e1 = (6.0 - 12.0 * z) / (h * h), (6.0 * z - 4.0) / h, (6.0 * z - 2.0) / h
+    for j in range(q.shape[1]):
+        out[0, j], out[1, j] = _position(w, q, dq, j), _velocity(w, q, dq, j)
+        out[2, j] = bend * (q[w.n, j] - q[w.k, j]) + e0 * dq[w.k, j] + e1 * dq[w.n, j]
+    return k
 
 
 @lean
@@ -260,15 +291,17 @@ def _interpolate(
     q: FloatArray,
     dq: FloatArray,
     at: FloatArray,
+    state: FloatArray,
     position: FloatArray,
     velocity: FloatArray,
     acceleration: FloatArray,
 ) -> None:
     k = -1
     for i in range(at.size):
-        k = _forward(t, at[i], k)
+        k = interpolate_at(t, q, dq, at[i], k, state)
         for j in range(q.shape[1]):
-            _, position[i, j], velocity[i, j], acceleration[i, j] = _cubic(t, q, dq, k, at[i], j)
+            position[i, j], velocity[i, j] = state[0, j], state[1, j]
+            acceleration[i, j] = state[2, j]
 
 
 @lean
@@ -283,13 +316,17 @@ def _average(
     velocity: FloatArray,
     acceleration: FloatArray,
 ) -> None:
+    """Accelerations are written where there is room for them."""
     now = then = -1
+    rate = 1.0 / window
     for i in range(at.size):
         now, then = _forward(t, at[i], now), _forward(t, at[i] - window, then)
+        a, b = _cubic(t, now, at[i]), _cubic(t, then, at[i] - window)
         for j in range(q.shape[1]):
-            a1, q1, v1, _ = _cubic(t, q, dq, now, at[i], j)
-            a0, q0, v0, _ = _cubic(t, q, dq, then, at[i] - window, j)
-            whole = area[max(now, 0), j] - area[max(then, 0), j]
-            position[i, j] = q[0, j] + (whole + a1 - a0) / window
-            velocity[i, j] = (q1 - q0) / window
-            acceleration[i, j] = (v1 - v0) / window
+            whole = area[a.k, j] - area[b.k, j] + _area(a, q, dq, j) - _area(b, q, dq, j)
+            position[i, j] = q[0, j] + rate * whole
+            velocity[i, j] = rate * (_position(a, q, dq, j) - _position(b, q, dq, j))
+        if i < acceleration.shape[0]:
+            for j in range(q.shape[1]):
+                change = _velocity(a, q, dq, j) - _velocity(b, q, dq, j)
+                acceleration[i, j] = rate * change

@@ -114,13 +114,30 @@ def _torques_at_ends(timing: Timing) -> FloatArray:
     """(K,), the greatest share of a limit of torque at the ends of each interval."""
     shares, left = timing.path_limits.shares, timing.path.pieces.interval_samples
     assert shares is not None
-    x, most = timing.stamp.x[:, None], np.zeros(len(left))
-    change = (x[1:] - x[:-1]) / (2 * timing.along.spacing[:, None])
-    for end, square in enumerate((x[:-1], x[1:])):
-        a, b, held, fade = (part[left + end] for part in shares)
-        taken = np.abs(a * change + b * square + held) + fade * square
-        np.maximum(most, taken.max(axis=1), out=most)
+    most = np.empty(len(left))
+    _fill_torques(*shares, left, timing.along.spacing, timing.stamp.x, most)
     return most
+
+
+@lean
+def _fill_torques(
+    by_u: FloatArray,
+    by_x: FloatArray,
+    held: FloatArray,
+    fade: FloatArray,
+    left: IntArray,
+    spacing: FloatArray,
+    x: FloatArray,
+    most: FloatArray,
+) -> None:
+    for k in range(left.size):
+        u, greatest = (x[k + 1] - x[k]) / (2.0 * spacing[k]), 0.0
+        for e in range(2):
+            s = left[k] + e
+            for j in range(held.shape[1]):
+                taken = abs(by_u[s, j] * u + by_x[s, j] * x[k + e] + held[s, j])
+                greatest = max(greatest, taken + fade[s, j] * x[k + e])
+        most[k] = greatest
 
 
 def torque_excesses(share: FloatArray, axis_names: Sequence[str]) -> list[Note]:

@@ -13,7 +13,6 @@ from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...errors import InputError
-from ...robot.assembly import assemble
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import (
     AXIS,
@@ -30,6 +29,7 @@ from ...robot.kinematics.chain_kernels import (
 from ...robot.kinematics.lean import inner, lean
 from ...robot.kinematics.vectors import Vector, cross, dot, load, scale, subtract
 from ...robot.model import Robot
+from ...spatial.pose import Pose
 
 
 class MassLoads(NamedTuple):
@@ -107,8 +107,9 @@ def _weights(
     for joint, weights in masses:
         if joint > robot.arm_size:
             raise InputError(f"{key}: {robot.name} has {robot.arm_size} joints, no joint {joint}")
-        upto = assemble([*robot.base_stages(), *robot.arm_stages(joint - 1)])
-        weight[upto.joint.size - len(robot.joint_stages(joint - 1))] += filled(weights, size)
+        stages = [*robot.base_stages(), *robot.arm_stages(joint - 1)]
+        before = sum(not isinstance(stage, Pose) for stage in stages)
+        weight[before - len(robot.joint_stages(joint - 1))] += filled(weights, size)
     at = np.flatnonzero(weight.any(axis=1))
     return at, weight[at]
 

@@ -34,9 +34,8 @@ from ..geometry.orientation_curves import orientation, pull_orientation
 
 _ITERATIONS = 30
 CONVERGED = 1e-9
-"""m and rad of pose error below which Newton's method has converged."""
-_AT_ONCE = 1e-11
-"""m and rad below which a guess is as good: rates follow from the Jacobian there."""
+"""m and rad of pose error below which Newton's method has converged: one more step leaves nothing
+of it, and rates follow from the Jacobian there."""
 _LONGEST_STEP = 0.3
 SINGULAR = 1e-8
 """Ratio of pivots of the Jacobian below which a sample counts as singular."""
@@ -165,7 +164,7 @@ def approach(
     """
     columns, square, order, error = work.columns, work.square, work.order, work.error
     best = np.inf
-    for i in range(_ITERATIONS):
+    for _ in range(_ITERATIONS):
         columns_at(chain, q, work)
         best = pose_error(goal_R, goal_p, work.R, work.p, error)
         square[:, :] = 0.0
@@ -185,7 +184,7 @@ def approach(
         scale = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
         for j in range(6):
             q[solved[j]] += scale * error[j]
-        if best < _AT_ONCE or (i > 0 and best < CONVERGED):
+        if best < CONVERGED:
             return best, conditioning
     return best, conditioning
 

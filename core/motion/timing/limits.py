@@ -35,8 +35,6 @@ from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .timed_zones import ROOM, TimedZones
 from .torque_rows import Shares, torque_rows
 
-_TOGETHER = 20_000
-"""Intervals whose rows of torque are made in one go."""
 CENTRIPETAL = -3
 """Stands for a row in `PathLimits.binding` where centripetal acceleration is the ceiling."""
 
@@ -175,7 +173,7 @@ def _fill(
     binding: IntArray,
     scratch: FloatArray,
 ) -> None:
-    """Write rows (K, 2, …), but for lower bounds, and ceilings (K + 1,) with what binds them.
+    """Write rows (K, 2, …), and ceilings (K + 1,) with what binds them.
 
     ``place`` (N + 2,) says which row is whose; −1 of what is limited nowhere.
     """
@@ -211,7 +209,7 @@ def _fill(
                     rows.a[interval, end, row] = rate[j] if limited else 0.0
                     rows.b[interval, end, row] = bend[j] if limited else 0.0
                     most = acceleration[s, j] * room[p, 1 if j >= axes else 0]
-                    rows.upper[interval, end, row] = most
+                    rows.lower[interval, end, row], rows.upper[interval, end, row] = -most, most
 
 
 @dataclass(frozen=True)
@@ -272,7 +270,7 @@ def path_limits(
     count, plain = int(pieces.first_interval[-1]), len(limited)
     torques = 0 if shares is None else 2 * shares.h.shape[1]
     if known is None:
-        rows = StampRows(*(np.zeros((count, 2, plain + torques)) for _ in range(4)))
+        rows = StampRows(*(np.empty((count, 2, plain + torques)) for _ in range(4)))
     else:
         place[:] = -1
         rows = known.rows.rows
@@ -291,15 +289,8 @@ def path_limits(
         lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
         stretches.lower(spacing, ceiling, binding)
         timed.lower(ceiling, binding)
-    if known is None:
-        np.negative(rows.upper, out=rows.lower)
     if known is None and shares is not None:
-        ends, left = pieces.interval_ends, torque_left(pieces, limits)
-        for first in range(0, count, _TOGETHER):
-            part = slice(first, first + _TOGETHER)
-            made = torque_rows(shares, ends[part], left[part])
-            for whole, own in zip(rows, made, strict=True):
-                whole[part, :, plain:] = own
+        torque_rows(shares, pieces.interval_ends, torque_left(pieces, limits), rows, plain)
     found = stamping.StampLimits(spacing, *rows, ceiling)
     return PathLimits(found, limited, shares, zones, stretches, timed, binding)
 

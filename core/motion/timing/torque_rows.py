@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 
 
 class Shares(NamedTuple):
@@ -19,9 +20,13 @@ class Shares(NamedTuple):
 
 
 def torque_rows(
-    shares: Shares, ends: IntArray, most: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Rows a, b, lower and upper (K, 2, 2 L), the lower sides before the upper ones.
+    shares: Shares,
+    ends: IntArray,
+    most: FloatArray,
+    rows: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    first: int,
+) -> None:
+    """Write rows a, b, lower and upper, the lower sides before the upper ones.
 
     Where less torque is programmed, that much less is left beside the weight.
 
@@ -29,13 +34,34 @@ def torque_rows(
         shares: (S, L), what the path takes.
         ends: (K, 2), samples at both ends of each interval.
         most: (K,), the share of the limit that may be used.
+        rows: (K, 2, R) each, R at least ``first`` and 2 L more.
+        first: where the rows begin.
     """
-    most = most[:, None, None]
-    a, b, held, fade = (part[ends] for part in shares)
-    none = np.full(held.shape, np.inf)
-    return (
-        np.concatenate([a, a], axis=2),
-        np.concatenate([b - most * fade, b + most * fade], axis=2),
-        np.concatenate([-most * (1 + held), -none], axis=2),
-        np.concatenate([none, most * (1 - held)], axis=2),
-    )
+    _fill(*shares, ends, most, *rows, first)
+
+
+@lean
+def _fill(
+    by_u: FloatArray,
+    by_x: FloatArray,
+    held: FloatArray,
+    fade: FloatArray,
+    ends: IntArray,
+    most: FloatArray,
+    a: FloatArray,
+    b: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    first: int,
+) -> None:
+    count = held.shape[1]
+    for k in range(most.size):
+        for e in range(2):
+            s = ends[k, e]
+            for j in range(count):
+                low, high = first + j, first + count + j
+                lost = most[k] * fade[s, j]
+                a[k, e, low] = a[k, e, high] = by_u[s, j]
+                b[k, e, low], b[k, e, high] = by_x[s, j] - lost, by_x[s, j] + lost
+                lower[k, e, low], upper[k, e, low] = -most[k] * (1.0 + held[s, j]), np.inf
+                lower[k, e, high], upper[k, e, high] = -np.inf, most[k] * (1.0 - held[s, j])

@@ -18,7 +18,7 @@ from numba import njit
 
 from ...arrays import FloatArray
 from .chain import Chain
-from .lean import inner, lean
+from .lean import inlined, inner, lean
 from .vectors import (
     UNTURNED,
     ZERO,
@@ -38,7 +38,7 @@ from .vectors import (
 )
 
 
-@inner
+@inlined
 def place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vector]:
     """The frame before joint k: rotation, step to its origin, and the joint's signed axis."""
     step = turn(turned, load_row(chain.translation, k))
@@ -47,7 +47,7 @@ def place(chain: Chain, k: int, turned: Rotation) -> tuple[Rotation, Vector, Vec
     return placed, step, axis
 
 
-@inner
+@inlined
 def turned_by(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
     """The rotation behind a revolute joint k."""
     moved: Rotation = compose(

@@ -19,7 +19,13 @@ from numba.extending import register_jitable
 
 from ...numba_version import LINKED
 
-_PLAIN = {"error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+_PLAIN = {
+    "error_model": "numpy",
+    # Products and sums in one instruction, rounded once.
+    "fastmath": {"contract"},
+    "_nrt": False,
+    "no_cfunc_wrapper": True,
+}
 
 
 def lean(function: Any) -> Any:
@@ -39,11 +45,23 @@ def inner(function: Any) -> Any:
 
     It has no machine code of its own: called from Python, it runs as it is written.
     """
+    return _inner(function)
+
+
+def inlined(function: Any) -> Any:
+    """As `inner`, and put in its callers' place where it is called.
+
+    For what is called for each joint of each sample and hands on whole rotations: LLVM by itself
+    would keep it apart, and have them written to memory and read again.
+    """
+    return _inner(function, forceinline=True)
+
+
+def _inner(function: Any, **options: Any) -> Any:
     if numba.version_info.short != LINKED:
-        return register_jitable(error_model="numpy", _nrt=False)(function)
+        return register_jitable(error_model="numpy", fastmath={"contract"}, _nrt=False)(function)
     from .linked import LinkedCompiler
 
     # With the flags of `lean`: numba compiles anew for each caller that has others.
-    return register_jitable(**_PLAIN, no_cpython_wrapper=False, pipeline_class=LinkedCompiler)(
-        function
-    )
+    options = {**_PLAIN, **options, "no_cpython_wrapper": False}
+    return register_jitable(**options, pipeline_class=LinkedCompiler)(function)

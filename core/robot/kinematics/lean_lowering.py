@@ -24,6 +24,8 @@ from numba.core.compiler_machinery import register_pass
 from numba.core.lowering import Lower
 from numba.core.typed_passes import BaseNativeLowering
 
+from .lean_wrapper import make_wrapper
+
 
 class _Lower(Lower):  # type: ignore[misc]
     """Of a function that counts no references."""
@@ -215,18 +217,13 @@ class WholeCalls(CPUCallConv):  # type: ignore[misc]
         name = f"{described.mangled_name}.whole"
         function = get_or_insert_function(module, kind, name)
         self.decorate_function(function, described.args, described.argtypes)
+        if described.inline:
+            function.attributes.add("alwaysinline")
         return function
 
-
-class _LeanLower(_Lower):
-    """Of a function that Python calls."""
-
-    def extract_function_arguments(self) -> Any:
-        """Its arguments, those that are descriptions put where functions called can read them."""
-        given = super().extract_function_arguments()
-        own = _Whole(self.context, self.fndesc.argtypes)
-        self.fnargs = own.from_arguments(self.builder, own.as_arguments(self.builder, given))
-        return self.fnargs
+    def standing_at(self, builder: Any, place: Any) -> Any:
+        """The value at a place that does not change, as it is handed over."""
+        return _read(builder, place)
 
 
 class _InnerLower(_Lower):
@@ -243,6 +240,14 @@ class _InnerLower(_Lower):
         self.entry_block = self.function.append_basic_block("entry")
         self.builder = IRBuilder(self.entry_block)
         self.call_helper = self.call_conv.init_call_helper(self.builder)
+
+
+class _LeanLower(_InnerLower):
+    """Of a function that Python calls."""
+
+    def create_cpython_wrapper(self, release_gil: bool = False) -> None:
+        """Add what Python calls."""
+        make_wrapper(self.context, self.call_conv, self.library, self.fndesc, self.env)
 
 
 class _Lowering(BaseNativeLowering):  # type: ignore[misc]

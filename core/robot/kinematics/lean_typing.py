@@ -13,11 +13,19 @@ from contextlib import contextmanager
 from typing import Any
 
 from numba import types
+from numba.core import errors
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import BaseTypeInference
 
 _known: dict[tuple[Any, ...], tuple[Any, Any]] = {}
 """What was found, by what was asked for; with the types asked for, which thereby live on."""
+
+
+class _Plain:
+    """Messages as they are: numba colours one for each operation that it tries in vain."""
+
+    def __getattr__(self, kind: str) -> Callable[[str], str]:
+        return str
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -38,6 +46,8 @@ def _remembering(context: Any) -> Iterator[None]:
     if "resolve_function_type" in vars(context):
         yield
         return
+    colours = errors._termcolor_inst  # type: ignore[attr-defined]
+    errors._termcolor_inst = _Plain()  # type: ignore[attr-defined]
     call, attribute, store = (
         context.resolve_function_type,
         context.resolve_getattr,
@@ -55,6 +65,7 @@ def _remembering(context: Any) -> Iterator[None]:
     try:
         yield
     finally:
+        errors._termcolor_inst = colours  # type: ignore[attr-defined]
         del context.resolve_function_type, context.resolve_getattr, context.resolve_setitem
 
 

@@ -6,7 +6,8 @@ one only.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +16,9 @@ from numba.core.cgutils import if_unlikely
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
+from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.registry import CPUDispatcher
+from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import (
     AnnotateTypes,
     IRLegalization,
@@ -176,6 +179,29 @@ class _Unwrapped(LoweringPass):  # type: ignore[misc]
         return True
 
 
+@contextmanager
+def _without_lifetimes() -> Iterator[None]:
+    """While it compiles, numba does not work out after each pass where variables live.
+
+    Only generators and what counts references need to know.
+    """
+    whole = PostProcessor.run
+
+    def run(processor: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+        made = processor.func_ir
+        if emit_dels or made.is_generator:
+            whole(processor, emit_dels, extend_lifetimes)
+            return
+        made.blocks = canonicalize_cfg(made.blocks)
+        made.variable_lifetime, made.generator_info = VariableLifetime(made.blocks), None
+
+    PostProcessor.run = run
+    try:
+        yield
+    finally:
+        PostProcessor.run = whole
+
+
 class _Compiler(Compiler):  # type: ignore[misc]
     """Compiles functions that make no array, and so hold nothing that has to be rewritten."""
 
@@ -215,6 +241,10 @@ class _Compiler(Compiler):  # type: ignore[misc]
             passes.add_pass(one, one._name)
         passes.finalize()
         return [passes]
+
+    def _compile_core(self) -> Any:
+        with _without_lifetimes():
+            return super()._compile_core()
 
 
 class LeanCompiler(_Compiler):
