@@ -39,7 +39,8 @@ from flyby.core.program.move import Move, Opaque
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.model import Robot
-from flyby.core.source.execution.answers import Answers, load_answers
+from flyby.core.source.execution.answers import Answers
+from flyby.core.source.execution.answers_file import load_answers
 from flyby.core.source.patch.edits import TOLERANCE, difference, reading_of
 from flyby.core.vendor import Vendor
 

@@ -301,7 +301,8 @@ def answers_of(options: SourceOptions) -> Answers:
     Raises:
         InputError: their file cannot be used.
     """
-    from ..core.source.execution.answers import Answers, load_answers
+    from ..core.source.execution.answers import Answers
+    from ..core.source.execution.answers_file import load_answers
 
     given = options.answers
     answers = load_answers(given) if isinstance(given, str | Path) else given or Answers()

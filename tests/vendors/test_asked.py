@@ -17,7 +17,8 @@ from flyby.core.program.move import Wait
 from flyby.core.program.program import Program
 from flyby.core.program.question import QuestionKind
 from flyby.core.registry import find_vendor
-from flyby.core.source.execution.answers import Answers, load_answers
+from flyby.core.source.execution.answers import Answers
+from flyby.core.source.execution.answers_file import load_answers
 from flyby.core.source.execution.answers_text import answers_text
 from flyby.core.source.reading import ReadOptions
 

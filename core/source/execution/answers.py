@@ -1,32 +1,5 @@
 """What a program asks of the world: signals, operators, clocks; answered from a file or by rule.
 
-A file of answers is TOML::
-
-    [values]                     # stays so; a name or a call as it stands in the program
-    di_part = true
-    "$IN[3]" = false
-    "GInput(giJob)" = 2
-    pVision = [[350, 20, 100], [0, 0, 1, 0], [0, 0, 0, 0], [9e9, 9e9, 9e9, 9e9, 9e9, 9e9]]
-
-    [sequences]                  # one answer after the other; the last one stays
-    "get_digital_in(1)" = [false, false, true]
-
-    [branches]                   # at a line: the branch taken, 1 for the first, 0 for ELSE or none
-    "main.mod:120" = 1
-
-    [passes]                     # at a line: how often a loop runs
-    "main.mod:200" = 3
-
-    [calls]                      # routines whose text is not at hand and that move nothing
-    rGripperOpen = "skip"
-
-    [durations]                  # s that the robot stands at a call, a wait or an output
-    rGripperOpen = 0.4
-    di_PressDone = 6
-
-    [signals]                    # what a signal is on another robot, for translations
-    do_gripper = "$OUT[3]"
-
 Without an answer waits are satisfied at once, and branches and loops are decided by rule (see
 `flow`). What was decided so is noted with its line.
 """
@@ -36,14 +9,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import NamedTuple
 
-from ...errors import InputError, Note, SourceError, Span, UnknownNameError
-from ...files.reading import read_toml
+from ...errors import InputError, Note, SourceError, Span
 from ...program.cycle import Cycle
 from ...program.question import Answer, Question, QuestionKind
 from .sections import Sections
+from .streams import Stream
 
 
 class Fields(tuple[tuple[str, "Answer"], ...]):
@@ -52,15 +24,14 @@ class Fields(tuple[tuple[str, "Answer"], ...]):
     __slots__ = ()
 
 
-_TABLES = ("values", "sequences", "branches", "passes", "calls", "durations", "signals")
-_MOST_PASSES = 10_000
-_LARGEST = 1e300
+TABLES = (
+    *("values", "sequences", "branches", "passes", "calls", "durations", "streams"),
+    "signals",
+)
 _LONGEST_KEY = 80
 """Characters of a statement that is a key as it stands."""
 _ROUND_SIGNS = re.compile(r" ?([^\w\s$]) ?")
 """A sign with the blanks round it, which do not count."""
-_LONGEST = 86_400.0
-"""s of a pause: a day."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +45,7 @@ class Answers:
         passes: number of passes.
         skipped: names of routines that are not at hand and are stepped over.
         durations: s that the robot stands at statements in which a key stands, as `stands_in` says.
+        streams: what is sent to the robot at such statements, once each.
         file: where they come from, for messages.
         goes_on: whether a program goes on behind what nobody knows: a routine that is not at hand
             is stepped over, a move whose target is not known is `open`. Else both are refused.
@@ -91,6 +63,7 @@ class Answers:
     goes_on: bool = False
     cycles: int = 1
     signals: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    streams: Mapping[str, Stream] = field(default_factory=dict)
 
     def names(self, table: str) -> Iterable[str]:
         """What a table of the file has answers to, in their order."""
@@ -101,107 +74,30 @@ class Answers:
             "passes": self.passes,
             "calls": sorted(self.skipped),
             "durations": self.durations,
+            "streams": self.streams,
             "signals": (),
         }
         return own[table]
 
     def with_passes(self, place: str, count: int) -> Answers:
         """The same, with the passes of one more loop."""
-        return replace(self, passes={**self.passes, _place(place): count})
+        return replace(self, passes={**self.passes, placed(place): count})
 
     def with_branch(self, place: str, number: int) -> Answers:
         """The same, with the branch of one more condition."""
-        return replace(self, branches={**self.branches, _place(place): number})
+        return replace(self, branches={**self.branches, placed(place): number})
 
     def at(self, table: str, place: str) -> int | None:
         """The branch or the passes at a place, ``file:line``, by the file's path or name alone."""
         entries = self.branches if table == "branches" else self.passes
-        file, _, line = _place(place).rpartition(":")
+        file, _, line = placed(place).rpartition(":")
         found = (entries.get(f"{name}:{line}") for name in (file, file.rpartition("/")[2]))
         return next((count for count in found if count is not None), None)
-
-
-def load_answers(path: str | Path) -> Answers:
-    """The answers in a TOML file.
-
-    Raises:
-        InputError: the file cannot be read, or a table or value is of no known kind; the message
-            names the file and the key.
-    """
-    data = read_toml(path)
-    tables: dict[str, dict[str, object]] = {}
-    for name, table in data.items():
-        if name not in _TABLES:
-            raise UnknownNameError(f"table of {path}", name, _TABLES)
-        if not isinstance(table, dict):
-            raise InputError(f"{path}: {name} is a table, [{name}]")
-        tables[name] = table
-    return Answers(
-        {key(k): _answer(v, path, k) for k, v in tables.get("values", {}).items()},
-        {key(k): _sequence(v, path, k) for k, v in tables.get("sequences", {}).items()},
-        {_place(k): _count(v, path, k) for k, v in tables.get("branches", {}).items()},
-        {_place(k): _count(v, path, k) for k, v in tables.get("passes", {}).items()},
-        frozenset(_skipped(k, v, path) for k, v in tables.get("calls", {}).items()),
-        {key(k): _seconds(v, path, k) for k, v in tables.get("durations", {}).items()},
-        str(path),
-        signals={k: _signals(v, path, k) for k, v in tables.get("signals", {}).items()},
-    )
-
-
-def _signals(value: object, path: str | Path, name: str) -> tuple[str, ...]:
-    names = value if isinstance(value, list) else [value]
-    if not names or not all(isinstance(one, str) and one.strip() for one in names):
-        raise InputError(
-            f"{path}: {name} in [signals] is the name of a signal on the other robot, in quotes, "
-            f"or a list of them, not {value!r}"
-        )
-    return tuple(names)
 
 
 def key(text: str) -> str:
     """How a name or call of a program is looked up: without blanks, in lower case."""
     return "".join(text.split()).casefold()
-
-
-def _answer(value: object, path: str | Path, name: str) -> Answer:
-    if isinstance(value, bool | str):
-        return value
-    if isinstance(value, int | float) and abs(value) <= _LARGEST:
-        return float(value)
-    if isinstance(value, list):
-        return tuple(_answer(item, path, name) for item in value)
-    if isinstance(value, dict):
-        return Fields((str(k), _answer(item, path, name)) for k, item in value.items())
-    if isinstance(value, int | float):
-        raise InputError(f"{path}: {name} is too large, or no number")
-    raise InputError(
-        f"{path}: {name} is true or false, a number, a text, a list or a table, not {value!r}"
-    )
-
-
-def _sequence(value: object, path: str | Path, name: str) -> tuple[Answer, ...]:
-    if not isinstance(value, list) or not value:
-        raise InputError(f"{path}: {name} in [sequences] is a list of answers, not {value!r}")
-    return tuple(_answer(item, path, name) for item in value)
-
-
-def _count(value: object, path: str | Path, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _MOST_PASSES:
-        raise InputError(
-            f"{path}: {name} is a whole number from 0 to {_MOST_PASSES}, not {value!r}"
-        )
-    if ":" not in name:
-        raise InputError(f"{path}: {name!r} is no place: write 'file:line'")
-    return value
-
-
-def _seconds(value: object, path: str | Path, name: str) -> float:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not 0 <= value <= _LONGEST:  # type: ignore[operator]
-        raise InputError(
-            f"{path}: {name} in [durations] is a time from 0 to {_LONGEST:g} s, not {value!r}"
-        )
-    return float(value)  # type: ignore[arg-type]
 
 
 def stands_in(name: str, text: str) -> bool:
@@ -218,14 +114,8 @@ def stands_in(name: str, text: str) -> bool:
 
 def stands_at(name: str, text: str, span: Span | None) -> bool:
     """Whether a key is a statement's place, ``file:line``, or stands in it; see `stands_in`."""
-    place = "" if span is None else f"{_place(span.file)}:{span.line}"
+    place = "" if span is None else f"{placed(span.file)}:{span.line}"
     return name in (place, place.rpartition("/")[2]) or stands_in(name, text)
-
-
-def _skipped(name: str, value: object, path: str | Path) -> str:
-    if value != "skip":
-        raise InputError(f'{path}: {name} in [calls] is "skip", not {value!r}')
-    return key(name)
 
 
 NOT_AT_HAND = "it is in no file at hand"
@@ -332,11 +222,19 @@ class Course:
             return 0.0
         shown = " ".join(text.split()).rstrip(";")
         plain = len(shown) <= _LONGEST_KEY and stands_in(key(shown), text)
-        name = shown if plain else f"{_place(span.file).rpartition('/')[2]}:{span.line}"
+        name = shown if plain else f"{placed(span.file).rpartition('/')[2]}:{span.line}"
         self._ask(
             Question(QuestionKind.PAUSE, "durations", name, span, "s", told, answered=bool(found))
         )
         return told
+
+    def stream(self, text: str, span: Span) -> Stream | None:
+        """What is sent to the robot at a statement, if the user says it and it was not yet sent."""
+        for name, stream in self.answers.streams.items():
+            if ("streams", name) not in self._asked and stands_at(name, text, span):
+                self._asked.add(("streams", name))
+                return stream
+        return None
 
     def _ask(self, question: Question) -> None:
         """Remember a question; what has several answers meanwhile has none that can be stated."""
@@ -449,7 +347,7 @@ class Course:
         ]
         unasked = [
             f"{name} in [{table}]"
-            for table in _TABLES
+            for table in TABLES
             for name in self.answers.names(table)
             if (table, name) not in self._asked
         ]
@@ -464,7 +362,7 @@ class Course:
 
     def _at(self, table: str, span: Span) -> int | None:
         """The entry for a place."""
-        file = _place(span.file)
+        file = placed(span.file)
         for name in (file, file.rpartition("/")[2]):
             self._asked.add((table, f"{name}:{span.line}"))
         return self.answers.at(table, f"{file}:{span.line}")
@@ -514,6 +412,6 @@ class Course:
         self._decided[place] = note, count + 1
 
 
-def _place(text: str) -> str:
+def placed(text: str) -> str:
     """How a file, or a line of it, is looked up."""
     return text.replace("\\", "/").casefold()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from ...display import counted
 from ...errors import LeftOpenError, Note, ParseError, SourceError, Span
 from ...program.call import Call
 from ...program.move import Move, MoveJ, Opaque, Statement, Wait
@@ -15,6 +16,7 @@ from ...spatial.pose import Pose
 from .answers import AnswerError, Course
 from .limits import EndlessError
 from .provenance import MovePart, Reads
+from .streams import Stream, Streaming
 
 _SHOWN = 4
 """Names that a note on kept statements lists."""
@@ -105,6 +107,7 @@ class Transcript:
     Attributes:
         calls: of the program's own routines, see `called`.
         left_out: why motions were left out, see `leave_out`.
+        streaming: what a run does about moves that a computer sends.
     """
 
     def __init__(self, text_of: Callable[[Span], str], course: Course) -> None:
@@ -114,6 +117,7 @@ class Transcript:
         self.parts: list[MoveParts] = []
         self.calls: list[Call] = []
         self.left_out: list[LeftOpenError] = []
+        self.streaming = Streaming()
         self._statements: list[Statement] = []
         course.sections.statements = self._statements
 
@@ -154,10 +158,34 @@ class Transcript:
             device: whether it is taken as a device's, which may take its time.
         """
         text = self.text_of(span)
-        self.emit(Opaque(text, stops, span))
+        stream = self._course.stream(text, span)
+        self.emit(Opaque(text, stops or stream is not None, span))
+        if stream is not None:
+            self._drive(stream, span)
+            return
         stands = self.pause(text, span, listed=stops or device)
         if why and not stands:  # of what the user has said how long it takes, nothing is left out
             self.notes.count(f"{name} is kept and not carried out: {why}", span)
+
+    def _drive(self, stream: Stream, span: Span) -> None:
+        """The robot follows what is sent to it at a statement."""
+        try:
+            moves = stream.moves(span, self.streaming.robot)
+        except SourceError as error:
+            if not self.leaves_open(error, span):
+                raise
+            self.streaming.lost(span)
+            return
+        part = MovePart(span)
+        for move in moves:
+            self.emit_move(move, MoveParts(span, part, part, part))
+            self.streaming.driven(move, span)
+        self.notes.once(
+            f"stream {span.file} {span.start}",
+            f"{stream.file} is driven here: {counted(moves, 'joint move')} in "
+            f"{stream.times[-1] - stream.times[0]:.4g} s, the first to where it begins",
+            span,
+        )
 
     def leave_out(self, span: Span, error: LeftOpenError) -> None:
         """Keep a motion whose target nobody knows, and go on from the next."""

@@ -24,7 +24,7 @@ from flyby.core.files.reading import read_bytes, read_json, read_text, read_toml
 from flyby.core.files.tables import TomlTable
 from flyby.core.motion.command.trajectory import Trajectory
 from flyby.core.motion.model.motion_file import load_motion_model
-from flyby.core.source.execution.answers import load_answers
+from flyby.core.source.execution.answers_file import load_answers
 
 DEEP = 100_000
 

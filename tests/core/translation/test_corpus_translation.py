@@ -15,7 +15,7 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.execution.answers import load_answers
+from flyby.core.source.execution.answers_file import load_answers
 from flyby.core.spatial.pose import Pose
 from flyby.core.translation.translate import translate
 

@@ -19,7 +19,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.execution.answers import load_answers
+from flyby.core.source.execution.answers_file import load_answers
 from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import Files, Reading
 from flyby.vendors.abb.values import predefined

@@ -6,7 +6,8 @@ import pytest
 
 from flyby.core.errors import SourceError
 from flyby.core.program.move import Opaque
-from flyby.core.source.execution.answers import Answers, load_answers
+from flyby.core.source.execution.answers import Answers
+from flyby.core.source.execution.answers_file import load_answers
 from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.run.reader import read

@@ -11,7 +11,8 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.program import Program
 from flyby.core.program.target import PoseTarget
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.execution.answers import Answers, load_answers
+from flyby.core.source.execution.answers import Answers
+from flyby.core.source.execution.answers_file import load_answers
 
 KR30 = find_robot("kuka/kr30-3")
 VENDOR = find_vendor("kuka")

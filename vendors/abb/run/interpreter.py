@@ -23,6 +23,7 @@ from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE
+from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import RobotFunctions
@@ -92,6 +93,11 @@ class Interpreter:
         host = proxy(self)
         self.evaluator = Evaluator(
             data, self.course, self.out.text_of, host, self.functions.table()
+        )
+        self.out.streaming = Streaming(
+            options.robot,
+            lambda move, span: host.streamed(move, span),
+            lambda span: host.lost(span),
         )
         self.tree = RapidTree(data, lambda: host.home)
         self.analysis = Analysis(self.tree)
@@ -187,6 +193,17 @@ class Interpreter:
         self.out.emit_move(move, parts)
         if move.target != self.place:
             self.place = move.target
+
+    def streamed(self, move: Move, span: Span) -> None:
+        """The robot has driven what a computer has sent."""
+        self.position.moved(move, span)
+        self.place = move.target
+
+    def lost(self, span: Span) -> None:
+        """Nobody knows where the robot is, behind a move that cannot be read."""
+        self.meter.move(span)
+        self.position.lose()
+        self.place = object()
 
     def leave_out(self, invoke: tree.Invoke, why: str) -> None:
         """Step over a move that cannot be driven."""
@@ -346,9 +363,7 @@ class Interpreter:
         """Whether the program goes on behind a move that cannot be read, which stays open."""
         if not self.out.leaves_open(error, span):
             return False
-        self.meter.move(span)
-        self.position.lose()
-        self.place = object()
+        self.lost(span)
         return True
 
     def _missing(self, statement: tree.Invoke, scope: Scope) -> None:

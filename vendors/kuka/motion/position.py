@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ....core.errors import FlybyError, SourceError, Span
 from ....core.motion.path.present_position import PresentPosition, last_seen_alike
-from ....core.program.move import Move
+from ....core.program.move import Move, MoveJ
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.source.text.axis_values import axis_values
@@ -53,6 +53,11 @@ class Position:
         self._last = target
         if target != self._place:
             self._place = target
+
+    def streamed(self, move: MoveJ, statement: Span) -> None:
+        """The robot has driven to joint values that a computer has sent."""
+        assert isinstance(move.target, JointTarget)
+        self.moved(move, statement, self.axis_struct(move.target.joints))
 
     def left_out(self, span: Span) -> None:
         """A motion was left out: where the robot stands is not known until the next."""

@@ -18,6 +18,7 @@ from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.answers import Course
 from ....core.source.execution.flow import Flow as Rules
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.bas import Basis
@@ -105,6 +106,7 @@ class Interpreter:
         self._keeping = keeping = Keeping(transcript, self._advance)
         position = Position(robot, options.start)
         self._placements = placements = Placements(data.system, course, notes.once)
+        transcript.streaming = Streaming(robot, position.streamed, position.left_out)
         own_position = OwnPosition(position, placements, lambda: transcript.move_index)
         self._evaluator = evaluator = Evaluator(
             data, course, self._function, own_position, self._advance

@@ -20,6 +20,7 @@ from ....core.source.execution.answers import Course
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
+from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import joints_of
@@ -99,6 +100,7 @@ class Interpreter:
         self.threads: list[threads.Started] = []
         self.inside: list[str] = []
         self.out = Transcript(texts.text, self.course)
+        self.out.streaming = Streaming(options.robot, self.position.moved, self.position.left_out)
         self._carried = 0
 
     # --------------------------------------------------------------------- the run

@@ -1,0 +1,113 @@
+"""Motion that a computer sends, driven from a file of joints, in every language."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flyby
+from flyby.core.errors import InputError, Span
+from flyby.core.source.execution.streams import Stream, load_stream
+
+SPAN = Span("a.mod", 1, 1, 0, 0)
+ROBOTS = {"abb": "abb/irb1600-6-145", "kuka": "kuka/kr30-3", "ur": "ur/ur10e"}
+FILES = {"abb": "demo.mod", "kuka": "demo.src", "ur": "demo.script"}
+TEXT = {
+    "abb": "MODULE demo\nVAR egmident id;\nPROC main()\n"
+    "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\n"
+    "EGMRunJoint id, EGM_STOP_HOLD\\J1;\n"
+    "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\nENDPROC\nENDMODULE\n",
+    "kuka": "DEF demo( )\nBAS(#INITMOV,0)\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}\n"
+    "RSI_MOVECORR()\nPTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}\nEND\n",
+    "ur": "def demo():\n  movej([0,-1.57,1.57,-1.57,-1.57,0], a=1.4, v=1.05)\n"
+    "  while True:\n    q = read_input_float_register(0)\n    servoj([q,0,0,0,0,0], t=0.008)\n"
+    "    if q > 3:\n      break\n    end\n  end\n"
+    "  movej([0,-1.57,1.57,-1.57,-1.57,0], a=1.4, v=1.05)\nend\n",
+}
+KEYS = {"abb": "EGMRunJoint", "kuka": "RSI_MOVECORR", "ur": "servoj"}
+HOME = {
+    "abb": (0, 0, 0, 0, 30, 0),
+    "kuka": (0, -90, 90, 0, 30, 0),
+    "ur": (0, -89.95, 89.95, -89.95, -89.95, 0),
+}
+
+
+def table(language: str, factor: float = 1.0, seconds: float = 3.0) -> str:
+    lines = ["time,j1,j2,j3,j4,j5,j6"]
+    for t in np.linspace(0, seconds, 301):
+        phase = t / seconds * 2 * math.pi
+        moved = (20 * factor * math.sin(phase), 5 * factor * (1 - math.cos(phase)), 0, 0, 0, 0)
+        values = (str(a + b) for a, b in zip(HOME[language], moved, strict=True))
+        lines.append(f"{t},{','.join(values)}")
+    return "\n".join(lines)
+
+
+def emulated(language: str, text: str, folder: Path) -> tuple[flyby.Program, flyby.Run]:
+    (folder / "sent.csv").write_text(text)
+    (folder / "answers.toml").write_text(f'[streams]\n{KEYS[language]} = "sent.csv"\n')
+    (folder / FILES[language]).write_text(TEXT[language])
+    program = flyby.read(
+        folder / FILES[language], robot=ROBOTS[language], answers=folder / "answers.toml"
+    )
+    return program, flyby.emulate(program)
+
+
+@pytest.mark.parametrize("language", list(ROBOTS))
+def test_a_stream_takes_its_time_and_ends_where_it_says(language, tmp_path) -> None:
+    program, run = emulated(language, table(language), tmp_path)
+    assert not run.faults
+    assert any("is driven here" in note.message for note in program.notes)
+    streamed = [m for m in program.moves if m.speed.duration is not None]
+    assert 10 < len(streamed) < 150
+    assert sum(m.speed.duration for m in streamed) == pytest.approx(3.0)
+    assert streamed[-1].target.joints == pytest.approx(np.radians(HOME[language]), abs=1e-9)
+    assert run.duration == pytest.approx(3.0, rel=0.15)
+
+
+@pytest.mark.parametrize("language", list(ROBOTS))
+def test_joints_that_turn_too_fast_are_a_fault_with_their_line(language, tmp_path) -> None:
+    _, run = emulated(language, table(language, factor=4, seconds=0.5), tmp_path)
+    (fault,) = run.faults
+    assert "sent.csv, line 3: joint 1 turns at" in fault.message
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(st.floats(0.01, 1), st.floats(-2, 2)), min_size=2, max_size=60))
+def test_between_its_targets_a_stream_runs_straight(steps) -> None:
+    times = np.cumsum([s for s, _ in steps])
+    joints = np.array([[q] for _, q in steps])
+    moves = Stream(times, joints, "sent.csv").moves(SPAN, None)
+    at = np.cumsum([times[0], *(m.speed.duration for m in moves[1:])])
+    found = np.interp(times, at, [m.target.joints[0] for m in moves])
+    assert np.abs(found - joints[:, 0]).max() < math.radians(0.0501)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "begins with the line time,j1,j2"),
+        ("t,j1\n0,1\n1,2\n", ":1: a stream begins"),
+        ("time,j1,j2_rad\n0,1,1\n1,2,2\n", ":1: a stream begins"),
+        ("time,j1\n0,1\n", "2 to 1,000,000 rows, not 1"),
+        ("time,j1\n0,1\n0,2\n", ":3: times must grow"),
+        ("time,j1\n0,1\n1,x\n", ":3: '1,x' are no numbers"),
+        ("time,j1\n0,1\n1,nan\n", ":3: 2 finite numbers"),
+        ("time,j1\n0,1\n1,2,3\n", ":3: 2 finite numbers"),
+    ],
+)
+def test_files_that_are_no_streams_are_refused_with_their_line(text, message, tmp_path) -> None:
+    file = tmp_path / "sent.csv"
+    file.write_text(text)
+    with pytest.raises(InputError, match=message):
+        load_stream(file)
+
+
+def test_radians_are_said_by_the_header(tmp_path) -> None:
+    file = tmp_path / "sent.csv"
+    file.write_text("time,j1_rad\n0,1\n1,2\n")
+    assert load_stream(file).joints[:, 0].tolist() == [1.0, 2.0]
