@@ -202,6 +202,7 @@ class Vendor:
         others: Iterable[str | Path] = (),
         start: JointTarget | None = None,
         beside: Iterable[str | Path] | None = None,
+        signals: Mapping[str, str] = MappingProxyType({}),
     ) -> Program:
         """The program in a source file; see `Reader.read_file` and `ReadOptions`.
 
@@ -214,7 +215,7 @@ class Vendor:
         others = tuple(others)
         for file in (path, *others):  # before anything looks for what else there is
             settle(file)
-        options = _read_options(entry, robot, answers, others, start)
+        options = replace(_read_options(entry, robot, answers, others, start), signals=signals)
         if beside is not None:
             options = replace(options, beside=tuple(map(Path, beside)))
         return reader.read_file(Path(path), options)

@@ -43,6 +43,8 @@ class ReadOptions:
         beside: the files that may stand beside the program, where a backup says so; None to look
             for them on the disk.
         executed: called with every statement that is executed.
+        signals: what the controller's signals are, by their names in lower case, where a backup
+            says so: ``"digital input"``.
         start: where the robot stands before the first move; None if nobody knows. What the program
             asks of its own position begins there.
     """
@@ -55,6 +57,7 @@ class ReadOptions:
     beside: tuple[Path, ...] | None = None
     executed: Executed | None = field(default=None, repr=False, compare=False)
     start: JointTarget | None = None
+    signals: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
 
 
 @dataclass(frozen=True)

@@ -168,7 +168,10 @@ def read_task(
     beside = [backup.root / name for name in task.files if name != file]
     vendor = registry().find_vendor(backup.vendor) if setup is None else setup.vendor
     robot = None if setup is None else setup.robot
-    return vendor.read_file(backup.root / file, entry, robot, answers, others, start, beside)
+    signals = {signal.name.lower(): signal.kind.value for signal in backup.signals}
+    return vendor.read_file(
+        backup.root / file, entry, robot, answers, others, start, beside, signals
+    )
 
 
 def _which_routine(backup: Backup, task: Task, entry: str | None) -> InputError:

@@ -92,7 +92,7 @@ class Interpreter:
         # together, so that a run is gone, with the syntax tree, as soon as it is over.
         host = proxy(self)
         self.evaluator = Evaluator(
-            data, self.course, self.out.text_of, host, self.functions.table()
+            data, self.course, self.out.text_of, host, self.functions.table(), options.signals
         )
         self.out.streaming = Streaming(
             options.robot,

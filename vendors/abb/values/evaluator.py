@@ -69,6 +69,7 @@ class Evaluator:
 
     Args:
         special: functions that ask the emulated robot, by lower-case name.
+        signals: what signals are, by lower-case name, where a backup says so.
     """
 
     def __init__(
@@ -78,6 +79,7 @@ class Evaluator:
         text_of: Callable[[Span], str],
         host: Host,
         special: Mapping[str, Special],
+        signals: Mapping[str, str],
     ) -> None:
         self.data = data
         self.reads = Reads()
@@ -91,6 +93,7 @@ class Evaluator:
         self._assumed: dict[tuple[str, str], tuple[Span, str]] = {}  # where, and for what, first
         self._checked: dict[int, tuple[Value, Type]] = {}
         self._special = {**SPECIAL, **special}
+        self._signals = signals
 
     # ------------------------------------------------------------------ values
 
@@ -427,12 +430,19 @@ class Evaluator:
                 return Located(answer, None, found.cell, type=found.type)
         return found
 
+    def _foreign(self, name: str) -> str:
+        """What a name is that no module at hand declares."""
+        signal = self._signals.get(name)
+        if signal is None:
+            return "which is not declared in what is at hand (a signal?)"
+        return f"{'an' if signal.startswith('a') else 'a'} {signal}"
+
     def _find(self, name: tree.Name, scope: Scope) -> Located:
         cell = self.cell(name, scope)
         if cell is None and not name.path and name.name in self._elsewhere:
             return Located(self._elsewhere[name.name], None, None)
         if cell is None:
-            reason = f"'{name.text}', which is not declared in what is at hand (a signal?)"
+            reason = f"'{name.text}', {self._foreign(name.name)}"
             return Located(Unknown(reason, name.span, self.answers.key(name.span)), None, None)
         if not cell.present:
             message = f"the optional argument {cell.name} was not given"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import flyby
 from flyby.core.backup.backup import Backup, SignalKind
 from flyby.core.language import BackupOpener
 from flyby.core.motion.emulator.controller import Controller
@@ -232,3 +233,13 @@ def test_gravity_that_contradicts_the_base_is_said(tmp_path: Path) -> None:
     assert robot.gravity == pytest.approx((0.0, 0.0, 9.80665), abs=1e-4)
     (note,) = texts(backup)
     assert "180° off a level floor" in note
+
+
+def test_signals_of_the_backup_are_called_so(tmp_path: Path) -> None:
+    main = MAIN.replace(
+        "    Pick;\n", "    IF diStart=1 AND giPart>2 Pick;\n    IF diGone=1 Pick;\n"
+    )
+    tasks = {"TASK1": ("T_ROB1", {"PROGMOD/MainModule.mod": main, "SYSMOD/user.sys": USER})}
+    notes = [str(note) for note in flyby.read(Station(tasks=tasks).write(tmp_path)).notes]
+    assert any("depends on 'diStart', a digital input:" in note for note in notes)
+    assert any("'diGone', which is not declared in what is at hand (a signal?)" in n for n in notes)
