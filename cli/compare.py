@@ -73,7 +73,7 @@ def _tell(found: Comparison) -> None:
     print_rich(f"{found.run.name} on {compared.robot.name}: log less emulation")
     print_table(COLUMNS, found.rows())
     print_rich(
-        f"the robot took {_longer(aligned.moving, aligned.logged_moving)}: "
+        f"the robot took {found.longer} emulated: "
         f"{aligned.logged_moving:.3f} s logged, {aligned.moving:.3f} s emulated "
         f"(ratio {f.cycle_time_ratio:.4f})",
         f"laid on the emulation, the log begins at {f.offset:+.4f} s, and is "
@@ -82,13 +82,6 @@ def _tell(found: Comparison) -> None:
         f"(jitter {1e3 * log.jitter:.2g} ms); {len(log.torn)} off the path, {len(log.held)} held, "
         f"{counted(log.holes, 'hole')}",
     )
-
-
-def _longer(emulated: float, logged: float) -> str:
-    share = 100 * (logged / emulated - 1.0) if emulated > 0.0 else 0.0
-    if abs(share) < 0.05:
-        return "as long as emulated"
-    return f"{abs(share):.1f} % {'longer' if share > 0 else 'less time'} than emulated"
 
 
 def _json(compared: Prediction, run: LoggedRun, scale: TimeScale | None) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from .track_content import (
     PageChart,
 )
 
-SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH, APART = (
+SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH, BETWEEN = (
     "speed",
     "position",
     "velocity",
@@ -26,7 +26,7 @@ SPEED, POSITION, VELOCITY, ACCELERATION, TORQUE, CLEARANCE, ENERGY, PUSH, APART 
     "clearance",
     "energy",
     "push",
-    "apart",
+    "between",
 )
 CHARTS = (
     PageChart(SPEED, "TCP speed", "mm/s"),

@@ -61,7 +61,7 @@ def comparison_page(found: Comparison) -> Page:
         {
             "emulated": f"{aligned.moving:.3f} s",
             "logged": f"{aligned.logged_moving:.3f} s",
-            "ratio": f"{found.figures.cycle_time_ratio:.4f}",
+            "the robot took": f"{found.longer} emulated",
             "path off by": f"{1e3 * found.figures.path_max:.2f} mm at most",
         },
         page_shares(run.program, run.report),

@@ -24,7 +24,7 @@ from ...drawing.page.content import (
     PageShare,
     PageTable,
 )
-from ...drawing.page.curves import APART, CHARTS
+from ...drawing.page.curves import BETWEEN, CHARTS
 from ...drawing.page.packing import Quantised
 from ...drawing.page.retiming import OtherClock, on_clock
 from ...drawing.page.track_content import PageChannel, PageChart, PageFlag, PageTrack
@@ -94,7 +94,7 @@ class _StationPage:
             self.runs.append(run)
         if made.clearances:
             self._distances(grid)
-        charts = [PageChart(APART, "Distance between robots", "mm"), *CHARTS]
+        charts = [PageChart(BETWEEN, "Distance between robots", "mm"), *CHARTS]
         return Page(
             "station" if made.station.file is None else made.station.file.parent.name,
             "station",
@@ -140,7 +140,7 @@ class _StationPage:
             )
             for own, other in ((a, b), (b, a)):
                 values = 1e3 * np.interp(tracks[own].motion.t.values, grid, least)
-                curve = PageChannel(f"to {names[other]}", APART, Quantised(values, 0.1))
+                curve = PageChannel(f"to {names[other]}", BETWEEN, Quantised(values, 0.1))
                 tracks[own] = replace(tracks[own], channels=[*tracks[own].channels, curve])
 
     def _standing(self, k: int, grid: FloatArray) -> tuple[FloatArray, IntArray]:

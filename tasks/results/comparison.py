@@ -36,6 +36,15 @@ class Comparison:
         """What is left between log and emulation."""
         return self.prediction.figures
 
+    @property
+    def longer(self) -> str:
+        """How much longer the robot took than the emulation: ``2.0 % longer than``."""
+        aligned = self.prediction.alignment
+        share = 100.0 * (aligned.logged_moving / aligned.moving - 1.0) if aligned.moving else 0.0
+        if abs(share) < 0.05:
+            return "as long as"
+        return f"{abs(share):.1f} % {'longer' if share > 0 else 'less time'} than"
+
     def rows(self) -> list[tuple[str, ...]]:
         """What is left in space and in time, and the same as the log was read."""
         found = _rows(self.figures)

@@ -85,7 +85,7 @@ export class PlotPane {
       const channels = track.channels.filter((channel) => channel.chart === chart.key);
       channels.forEach((channel, k) => {
         const joint = channel.axis ?? null;
-        if (!own && (channel.stepped || joint !== null || chart.key === "apart")) return; // of two robots once
+        if (!own && (channel.stepped || joint !== null || chart.key === "between")) return; // of two robots once
         found.push({ track, channel, own, name: own ? channel.name : `${channel.name}, ${track.name}`, colour: colourOf(channel, joint, k, own) });
       });
     }
@@ -102,7 +102,7 @@ export class PlotPane {
     const curves = this.curves(chart);
     slot.curves = curves;
     const tables = curves.map(({ track, channel }) => [this.clockTimes(track), Array.from(channel.values, (v) => (Number.isFinite(v) ? v : null))]);
-    const data = uPlot.join(tables.map(([x, y]) => [x, y]), tables.map(() => [2]));
+    const data = curves.length ? uPlot.join(tables.map(([x, y]) => [x, y]), tables.map(() => [2])) : [[0]];
     const limit = chart.span;
     // What is programmed may be far beyond what is driven (vmax): it runs out of the plot then.
     const [driven, asked] = [false, true].map((stepped) => highest(curves.filter(({ channel }) => !!channel.stepped === stepped)));

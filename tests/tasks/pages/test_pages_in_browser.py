@@ -180,7 +180,7 @@ def test_a_station_runs_on_one_clock(opened: Opened) -> None:
             drawn = view.evaluate("([k, t]) => flyby.session.tracks[k].joints(t)", [k, t])
             np.testing.assert_allclose(drawn, q, atol=3e-4)
     (pair,) = made.clearances
-    curve = "flyby.session.tracks[0].channel('apart')"
+    curve = "flyby.session.tracks[0].channel('between')"
     least = view.evaluate(f"flyby.session.tracks[0].value({curve}, {pair.least_at})")
     assert least == pytest.approx(1e3 * pair.least, abs=10.0)
     # A click on a bar goes to its time, its robot and its line; both sources are there.
@@ -210,6 +210,25 @@ def test_a_station_that_never_ends_says_so(opened: Opened, folder: Path) -> None
     view = opened(page_bytes(made))
     assert "never ends" in view.locator(".top").inner_text()
     assert view.locator(".notices li").count() == len(made.findings())
+
+
+def test_a_log_beside_its_emulation(opened: Opened, folder: Path) -> None:
+    """Curves of the measured track are drawn beside an emulated one that has none of them."""
+    program = flyby.read(SQUARE, robot=ROBOT)
+    moved = flyby.emulate(program).trajectory
+    t = np.arange(0.0, moved.t[-1], 0.008)
+    q = np.column_stack([np.interp(t, moved.t, column) for column in moved.q.T])
+    rows = np.column_stack([1.03 * t, q])
+    path = folder / "log.csv"
+    np.savetxt(path, rows, "%.9g", ",", header="t,q1,q2,q3,q4,q5,q6", comments="")
+    found = flyby.compare(program, log=path)
+    share, _, words = found.longer.partition(" ")
+    assert float(share) == pytest.approx(3.0, abs=0.5) and words == "% longer than"
+    view = opened(page_bytes(found))
+    assert f"{found.longer} emulated" in view.locator(".top").inner_text()
+    assert view.evaluate("flyby.plots.slots.map((slot) => slot.curves.length)")[0] == 1
+    view.locator(".choice").get_by_role("button", name="measured").click()
+    assert view.evaluate("flyby.session.track.name") == "measured"
 
 
 def test_points_of_a_front_are_picked(opened: Opened) -> None:
