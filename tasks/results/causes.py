@@ -30,6 +30,7 @@ WAITS, DEVICES, SETTLING = "waits of the program", "devices", "settling"
 PlaceOf = Callable[[Span], str]
 _WORTH = 0.005
 """Share of the time that a cause gives back at least to be looked at first."""
+_SAID = {"corner": "the speed in corners", "settling": "settling at stops"}
 SMALLEST = 0.002
 """Share of the time below which a limit is not looked into."""
 PASSED = 0.01
@@ -185,7 +186,7 @@ def _sentence(
     if cause.time is not None:
         spent = f", {cause.time:.2f} s of {whole:.2f} s"
     return (
-        f"{word} {cause.name}{spent}{where}: without it the cycle would be {cause.gain:.2f} s "
+        f"{word} {_SAID.get(cause.name, cause.name)}{spent}{where}: without it the cycle would be {cause.gain:.2f} s "
         "shorter."
     )
 
