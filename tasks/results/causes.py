@@ -185,10 +185,8 @@ def _sentence(
     spent = ""
     if cause.time is not None:
         spent = f", {cause.time:.2f} s of {whole:.2f} s"
-    return (
-        f"{word} {_SAID.get(cause.name, cause.name)}{spent}{where}: without it the cycle would be {cause.gain:.2f} s "
-        "shorter."
-    )
+    name = _SAID.get(cause.name, cause.name)
+    return f"{word} {name}{spent}{where}: without it the cycle would be {cause.gain:.2f} s shorter."
 
 
 def cause_row(cause: TimeCause, place: str, whole: float) -> tuple[str, ...]:
