@@ -98,7 +98,7 @@ def record(recording: Recording, robot: Robot, period: float) -> Sources:
     script = body(recording.program, robot, options, *_NAMES)
     made = {script.name + SUFFIX: _text(recording, script, cycles, cycle)}
     if not recording.alone:
-        made[LISTENER] = files(__package__).joinpath("log_listener.py").read_text("utf-8")
+        made[LISTENER] = files(__package__).joinpath(LISTENER).read_text("utf-8")
     return made
 
 
