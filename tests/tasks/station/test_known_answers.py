@@ -7,7 +7,9 @@ away: both in is a collision, one in is none.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import flyby
@@ -136,3 +138,80 @@ def test_scenes(write: Write, name: str) -> None:
     assert made.clear == scene.in_time
     if not scene.in_time:
         assert any("one.mod:" in said and "two.mod:" in said for said in made.findings())
+
+
+RAIL = """
+[external_axis.rail]
+role = "track"
+kind = "prismatic"
+axis = "y"
+range_mm = [-3000, 3000]
+speed_mm_s = 1000
+acceleration_mm_s2 = 2000
+"""
+
+
+@pytest.mark.parametrize(("stands", "clear"), [(0, False), (1500, True)])
+def test_a_rail_carries_an_arm_past_another(write: Write, stands: float, clear: bool) -> None:
+    """The arm points at where the other stands; the rail brings it past, or ends before."""
+
+    def rail(y: float) -> str:
+        return f"MoveAbsJ [[0,0,0,0,30,0],[{y},9E9,9E9,9E9,9E9,9E9]], v1000, fine, tool0"
+
+    file = write({"one": [rail(2900), rail(stands), rail(2900)], "two": [IN, IN]}, gap=650.0)
+    cell = file.parent / "one.toml"
+    cell.write_text(cell.read_text() + RAIL)
+    made = flyby.station(file)
+    (pair,) = made.clearances
+    assert pair.any_time.proven == clear and pair.in_time.proven == clear
+    if not clear:
+        assert pair.least < 0.0
+        (conflict,) = list(pair.in_time.conflicts.values())[:1]
+        assert conflict.moves[0] == 1
+
+
+def test_two_arms_hold_one_part(tmp_path: Path) -> None:
+    """A bar, held by the one, lies in the other's gripper; both move it along, one programmed at
+    half the speed."""
+    text = 'clearance_mm = 5\n[allow]\npairs = [["one.bar", "two.J6"], ["one.bar", "two.J5"]]\n'
+    for name, y, speed in (("one", 0, "v200"), ("two", 450, "v100")):
+        tool = "bar" if name == "one" else "tool0"
+        line = "MoveL \\ID:={}, [[420,{},{}],[0,0,1,0],[0,0,0,0],{}], {}, fine, {}"
+        moves = [line.format(10 * k, y, z, UNUSED, speed, tool) for k, z in ((1, 450), (2, 350))]
+        first = f"MoveJ [[420,{y},350],[0,0,1,0],[0,0,0,0],{UNUSED}], v200, fine, {tool}"
+        lines = [
+            "ConfJ \\Off",
+            "ConfL \\Off",
+            first,
+            "SyncMoveOn s1, all",
+            *moves,
+            "SyncMoveOff s2",
+        ]
+        body = ";\n    ".join([*begun, *moves, "SyncMoveOff s2"])
+        (tmp_path / f"{name}.mod").write_text(
+            f"MODULE {name}\n  VAR syncident s1;\n  VAR syncident s2;\n"
+            '  PERS tasks all{2} := [["T1"],["T2"]];\n'
+            "  PERS tooldata bar := [TRUE,[[0,0,0],[1,0,0,0]],[1,[0,0,20],[1,0,0,0],0,0,0]];\n"
+            f"  PROC main()\n    {body};\n  ENDPROC\nENDMODULE\n"
+        )
+        cell = f'robot = "abb/irb120-3-058"\nbase = {{ xyz_mm = [0, {y}, 0] }}\n'
+        if name == "one":
+            cell += (
+                "[tool.bar]\nbox_mm = [30, 400, 20]\npose = { xyz_mm = [0, 200, 15] }\n"
+                "tcp = { xyz_mm = [0, 0, 0] }\n[allow]\npairs = [['J5', 'bar']]\n"
+            )
+        (tmp_path / f"{name}.toml").write_text(cell)
+        text += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.mod"\n'
+    file = tmp_path / "station.toml"
+    file.write_text(text)
+    made = flyby.station(file)
+    (pair,) = made.clearances
+    assert pair.in_time.proven, made.findings()
+    ends = [schedule.end for schedule in made.run.schedules.values()]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-6)
+    t = np.linspace(0.0, made.duration, 500)
+    heights = []
+    for name, schedule in made.run.schedules.items():
+        trajectory = made.station.members[name].run.trajectory
+        heights.append(np.interp(schedule.own(t), trajectory.t, trajectory.position[:, 2]))
+    assert abs(heights[0] - heights[1]).max() < 0.01
