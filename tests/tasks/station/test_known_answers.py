@@ -179,14 +179,7 @@ def test_two_arms_hold_one_part(tmp_path: Path) -> None:
         line = "MoveL \\ID:={}, [[420,{},{}],[0,0,1,0],[0,0,0,0],{}], {}, fine, {}"
         moves = [line.format(10 * k, y, z, UNUSED, speed, tool) for k, z in ((1, 450), (2, 350))]
         first = f"MoveJ [[420,{y},350],[0,0,1,0],[0,0,0,0],{UNUSED}], v200, fine, {tool}"
-        lines = [
-            "ConfJ \\Off",
-            "ConfL \\Off",
-            first,
-            "SyncMoveOn s1, all",
-            *moves,
-            "SyncMoveOff s2",
-        ]
+        begun = ["ConfJ \\Off", "ConfL \\Off", first, "SyncMoveOn s1, all"]
         body = ";\n    ".join([*begun, *moves, "SyncMoveOff s2"])
         (tmp_path / f"{name}.mod").write_text(
             f"MODULE {name}\n  VAR syncident s1;\n  VAR syncident s2;\n"
