@@ -17,7 +17,9 @@ from .parameters import AsJson, Force, PageFile, with_options
 if TYPE_CHECKING:
     from ..tasks.results.stations import DrivenStation
 
-StationFile = Annotated[Path, typer.Argument(help="Station file (TOML).")]
+StationFile = Annotated[
+    Path, typer.Argument(help="Station file (TOML), or a backup of several robots.")
+]
 
 
 @with_options

@@ -12,7 +12,7 @@ from ...core.errors import FlybyError, InputError, Note, OptionError
 from ..options.entries import MILLISECONDS, Extent, TaskOptions, number, switch, value
 from ..options.moves import is_named
 from ..setup import setup_of_program, start_of
-from .opening import OpenedStation, open_station
+from .opening import OpenedStation, is_station_file, open_station
 from .station import JITTER
 
 if TYPE_CHECKING:
@@ -88,6 +88,8 @@ def changed_station(
     from ...problems.improve.station.feasibility import StationFeasibility
     from .changed import ChangedStation
 
+    if not is_station_file(Path(source)):
+        raise InputError(f"{source}: programs of station files (.toml) are improved together")
     opened = open_station(Path(source), options.say)
     shares = _shares(opened, options)
     members = opened.station.members

@@ -49,8 +49,9 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     from ...core.station.synchronised import synchronised
     from ...core.station.world_zones import on_at_start, with_zones
 
-    file = read_station_file(source)
+    file = read_station_file(source) if is_station_file(source) else _of_backup(source)
     members, actions, unknown, ids = {}, {}, [], {}
+    notes: list[Note] = []
     for member in file.members:
         say(f"reading and driving {member.name}")
         made, setup = _member(member, file)
@@ -95,8 +96,47 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         file.file,
         file.zones,
     )
-    notes = (*shared.notes, *_alone(actions), *_passed(actions, members))
-    return OpenedStation(station, actions, tuple(unknown), notes)
+    if not is_station_file(source):
+        notes.append(
+            Note(
+                f"{source} is a backup: nobody says what joins outputs and inputs of its tasks, "
+                "and what stands around; a station file does, and may name the backup as the "
+                "program of each robot, with its task"
+            )
+        )
+    notes += [*shared.notes, *_alone(actions), *_passed(actions, members)]
+    return OpenedStation(station, actions, tuple(unknown), tuple(notes))
+
+
+def is_station_file(source: Path) -> bool:
+    """Whether a source is a station file, and not a backup."""
+    return source.suffix.casefold() == ".toml"
+
+
+def _of_backup(source: Path) -> StationFile:
+    """A station of the tasks of a backup that move robots; nothing joins their signals.
+
+    Raises:
+        InputError: it is no backup, or fewer than two of its tasks move robots.
+    """
+    from ...core.station.station_file import MemberFile, StationFile
+    from ..backup.finding import find_backup
+    from ..catalogue import registry
+
+    backup = find_backup(source, registry())
+    if backup is None:
+        raise InputError(
+            f"{source}: is neither a station file (.toml) nor a backup with several robots"
+        )
+    moving = [task.name for task in backup.tasks if task.robot is not None]
+    if len(moving) < 2:
+        raise InputError(
+            f"{source}: {len(moving)} of its tasks moves a robot; a station has two robots or more"
+        )
+    members = tuple(
+        MemberFile(name, None, source, None, name, None, None, None, 0.0) for name in moving
+    )
+    return StationFile(members, (), {}, frozenset(), {}, 0.0, (), source)
 
 
 def _looked_at(file: StationFile, robot: str) -> set[str]:

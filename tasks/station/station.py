@@ -40,7 +40,7 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
     """Run the programs of several robots on one clock, and prove that they keep clear.
 
     Args:
-        source: a station file.
+        source: a station file, or a backup of several robots.
 
     Raises:
         InputError: a file cannot be read, or joins signals that are not there.

@@ -263,3 +263,35 @@ def test_a_routine_that_is_not_there_is_told_from_one_that_nobody_names() -> Non
         flyby.read(archive, entry="NOWHERE")
     with pytest.raises(InputError, match=r"which routine\?.*PRESS"):
         flyby.read(archive)
+
+
+def test_the_tasks_of_a_backup_are_a_station(tmp_path: Path) -> None:
+    folder = multimove().write(tmp_path)
+    second = folder / "RAPID/TASK2/PROGMOD/Second.mod"
+    second.write_text(second.read_text().replace("    Pick;\n", "", 1))  # beyond the small arm
+    made = flyby.station(folder)
+    assert list(made.station.members) == ["T_ROB1", "T_ROB2"]
+    places = [member.cell.robot.base.position[1] for member in made.station.members.values()]
+    assert places == [1.2, -1.2]
+    (pair,) = made.clearances
+    assert pair.least < 3.0 and made.deadlock is None
+    assert any("is a backup: nobody says what joins" in str(note) for note in made.notes)
+    file = tmp_path / "station.toml"
+    file.write_text(
+        "clearance_mm = 10\n"
+        + "".join(
+            f'[robot.{name}]\nprogram = "{folder.as_posix()}"\ntask = "{task}"\n'
+            for name, task in (("left", "T_ROB1"), ("right", "T_ROB2"))
+        )
+    )
+    again = flyby.station(file)
+    assert again.duration == pytest.approx(made.duration)
+
+
+def test_one_robot_is_no_station(station: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="1 of its tasks moves a robot"):
+        flyby.station(station)
+    empty = tmp_path / "nothing"
+    empty.mkdir()
+    with pytest.raises(InputError, match="neither a station file"):
+        flyby.station(empty)
