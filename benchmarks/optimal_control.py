@@ -10,6 +10,7 @@ acceleration and torque; ``6dof-clutter-speeds``: the same without those of torq
 ``6dof-free``: a wide motion under torque limits, 60 intervals, no obstacles: ``time_s`` and
 ``cpu_ms`` of one solution of the transcription; the peer is IPOPT on the same callables, with the
 same Hessian and tolerance. ``6dof-free-energy``: the same with equal weights on time and energy.
+Method and Hessian are those of `MotionSearch`.
 
 The peer: pip install flyby[benchmarks]
 """
@@ -148,10 +149,15 @@ def _beside_ipopt(case: str, weight: float) -> Iterator[Figure]:
         unit = term.size(guess.x)
     points = guess.layout.points
     bounds = Bounds(np.tile(limits.lower, (points, 1)), np.tile(limits.upper, (points, 1)))
-    nlp = Transcription(task, limits, guess.layout, guess.scale, unit, plant).nlp(bounds)
-    solve(nlp, guess.x, max_iterations=2, qp="interior_point")
+    energetic = weight < 1.0
+    stated = Transcription(
+        task, limits, guess.layout, guess.scale, unit, plant, indefinite=energetic
+    )
+    nlp = stated.nlp(bounds)
+    how = {"method": "interior_point" if energetic else "sqp", "qp": "interior_point"}
+    solve(nlp, guess.x, max_iterations=2, **how)
     begin = time.process_time()
-    ours = solve(nlp, guess.x, tolerance=TOLERANCE, qp="interior_point")
+    ours = solve(nlp, guess.x, tolerance=TOLERANCE, **how)
     own = time.process_time() - begin
     options = {"tol": TOLERANCE, "constr_viol_tol": TOLERANCE, "max_iter": 500}
     begin = time.process_time()

@@ -110,6 +110,9 @@ class Saddle:
         patterns: keeps symbolic factorisations, others' too; None for its own.
         regularisation: share of P's size by which the factorised system is shifted; more where P
             is not semidefinite.
+
+    Attributes:
+        convex: whether the last P curves upwards along the active rows and fixed variables.
     """
 
     def __init__(
@@ -117,6 +120,7 @@ class Saddle:
     ) -> None:
         self._patterns = patterns or SaddlePatterns()
         self._regularisation = regularisation
+        self.convex = False
 
     def solve(
         self,
@@ -144,7 +148,9 @@ class Saddle:
             factorisation breaks down.
         """
         if dense.is_dense(P.pattern):
-            return dense.saddle(P, q, A, rows, target, fixed, values)
+            of_dense = dense.saddle(P, q, A, rows, target, fixed, values)
+            self.convex = of_dense is not None  # others are not factorised
+            return of_dense
         pattern = self._patterns.of(P.pattern, A.pattern)
         matrices = SaddleMatrices(
             P.pattern.starts,
@@ -159,10 +165,11 @@ class Saddle:
         active = np.concatenate([~fixed, rows])
         found = np.zeros(n + len(target))
         shift = self._regularisation * max(1.0, P.largest())
-        solved = _solve(
+        positive = _solve(
             matrices, pattern.factors, pattern.places, right, active, values, found, shift
         )
-        return (found[:n], found[n:]) if solved else None
+        self.convex = bool(positive == n)
+        return (found[:n], found[n:]) if positive >= 0 else None
 
 
 class SaddleMatrices(NamedTuple):
@@ -186,8 +193,8 @@ def _solve(
     values: FloatArray,
     found: FloatArray,
     delta: float,
-) -> bool:
-    """See `Saddle.solve`; works in place.
+) -> int:
+    """See `Saddle.solve`; works in place. Number of positive pivots, -1 without a solution.
 
     Args:
         matrices: overwritten.
@@ -215,9 +222,10 @@ def _solve(
                 data[places.diagonal[j]] += matrices.P[k]
     for k in range(len(matrices.A)):
         data[places.A[k]] = matrices.A[k]
-    if factorise(factors, data) < 0:
-        return False
-    return bool(refined(matrices, factors, exact, right, found, _EXACT) < np.inf)
+    positive = int(factorise(factors, data))
+    if positive < 0 or not refined(matrices, factors, exact, right, found, _EXACT) < np.inf:
+        return -1
+    return positive
 
 
 @njit(cache=True, error_model="numpy")

@@ -18,7 +18,7 @@ from ..filter import Filter
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from .barrier import Barrier
-from .direction import Errors, errors_at, lagrangian_slopes
+from .direction import Errors, barrier_slopes, errors_at, lagrangian_slopes
 from .functions import Functions
 from .iterate import InteriorIterate, InteriorLimits, advance, keep_near, longest, push_inside
 from .line_search import LineSearch, Taken
@@ -26,6 +26,7 @@ from .newton import Newton, Place, SingularError
 
 _RELAXED = 1e-8
 _TINY = 1e-13
+_GENTLE, _LEAST_FIRST, _LARGEST_FIRST = 0.1, 1e-6, 1e-2
 _LARGEST_FACTOR, _SMALL_FACTOR = 1e4, 1e-4
 
 
@@ -116,6 +117,16 @@ class InteriorPoint:
         self.functions.differentiate(moved)
         return moved
 
+    def begin_gently(self) -> None:
+        """Begin with a μ by which the limits push less than the objective pulls: a start that keeps
+        all limits is worth staying near to, and many limits together drive it far away."""
+        place, n = self.place, len(self.place.point.x)
+        away = barrier_slopes(np.zeros(len(place.at.v)), place.at, self.box, 1.0)
+        push = float(np.abs(away[:n] + place.point.J.transposed_times(away[n:])).max())
+        pull = float(np.abs(place.point.g).max())
+        if push > 0.0 and pull > 0.0:
+            self.barrier.mu = min(max(_GENTLE * pull / push, _LEAST_FIRST), _LARGEST_FIRST)
+
     def _new_filter(self) -> None:
         self.search.filter = Filter(
             _LARGEST_FACTOR * self._start_theta, _SMALL_FACTOR * self._start_theta
@@ -140,7 +151,8 @@ class InteriorPoint:
             errors = self.errors()
             if self._small(errors):
                 return InteriorEnding.SMALL
-            if self.barrier.update(errors):
+            # A short step of a shifted system hides that the barrier's problem is not solved.
+            if self.newton.creeps != 1 and self.barrier.update(errors):
                 self._new_filter()
             taken = self._step()
             if taken is None:
@@ -160,8 +172,7 @@ class InteriorPoint:
         """The next step that is taken; None where none helps."""
         place, barrier = self.place, self.barrier
         try:
-            self.newton.factorise(place, self.hessian_here(), barrier.mu)
-            step, slope = self.newton.step(barrier.mu)
+            step, slope = self.newton.direction(place, self.hessian_here(), barrier.mu)
             return self.search.along(place, step, slope, barrier.mu)
         except SingularError:
             return None

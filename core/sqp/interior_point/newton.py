@@ -21,6 +21,9 @@ from .system import BarrierSystem, SystemWeights
 
 _FIRST_SHIFT, _LEAST_SHIFT, _LARGEST_SHIFT = 1e-4, 1e-20, 1e40
 _FAST, _GROW, _SHRINK = 100.0, 8.0, 1.0 / 3.0
+_CREEP, _CREEPS = 0.3, 3
+"""Largest change of a variable, in its size, below which a step of a shifted system may creep, and
+how many of them in a row do."""
 _DEPENDENT = 1e-8
 _BAD = 1e-6
 _LARGEST_FIRST = 1e3
@@ -58,8 +61,13 @@ class Newton:
         patterns: keeps symbolic factorisations.
         box: limits.
 
+    Shifts are equal for all variables, as long as they let steps get anywhere: where variables are
+    large, slopes are small beside any shift, and steps creep. From then on shifts count in the
+    variables' sizes.
+
     Attributes:
         shift: by which the last Hessian's diagonal was raised.
+        creeps: number of short steps of shifted systems in a row.
     """
 
     def __init__(self, patterns: SaddlePatterns, box: InteriorLimits) -> None:
@@ -68,6 +76,8 @@ class Newton:
         self._known: tuple[Sparsity, Sparsity, BarrierSystem] | None = None
         self._last_shift = 0.0
         self.shift = 0.0
+        self.creeps = 0
+        self._relative = False
 
     def _system_of(self, H: Sparsity, A: Sparsity) -> BarrierSystem:
         if self._known is None or self._known[0] is not H or self._known[1] is not A:
@@ -75,7 +85,26 @@ class Newton:
             self._known = H, A, BarrierSystem(self._patterns.of(H, A), H, A, held)
         return self._known[2]
 
-    def factorise(self, place: Place, H: SparseMatrix, mu: float) -> None:
+    def direction(self, place: Place, H: SparseMatrix, mu: float) -> tuple[InteriorIterate, float]:
+        """Factorise at a place, and `step`.
+
+        Raises:
+            SingularError: see `factorise`.
+        """
+        self.factorise(place, H)
+        step, slope = self.step(mu)
+        if self._relative or self.shift == 0.0:
+            self.creeps = 0
+            return step, slope
+        size = float((np.abs(step.v) / np.maximum(1.0, np.abs(place.at.v))).max())
+        self.creeps = self.creeps + 1 if size < _CREEP else 0
+        if self.creeps < _CREEPS:
+            return step, slope
+        self._relative = True
+        self.factorise(place, H)
+        return self.step(mu)
+
+    def factorise(self, place: Place, H: SparseMatrix) -> None:
         """Factorise with the least shift, of a growing sequence, that gives the right inertia
         (Wächter and Biegler, section 3.1).
 
@@ -88,7 +117,9 @@ class Newton:
         self._dependent = 0.0
 
         def right(shift: float) -> bool:
-            found = self._system.factorise(H, J, place.at, self._box, shift, self._dependent)
+            found = self._system.factorise(
+                H, J, place.at, self._box, shift, self._dependent, self._relative
+            )
             if found == n:
                 self.shift = shift
             return found == n

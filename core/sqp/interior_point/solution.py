@@ -82,6 +82,8 @@ class InteriorSolution:
             method.start(point)
         except SingularError:
             return
+        if self._problem.violation(point) <= self._tolerance:
+            method.begin_gently()
         for _ in range(_RESTORATIONS):
             outcome = method.run()
             self._progress.trouble = method.search.trouble

@@ -61,6 +61,7 @@ class BarrierSystem:
         box: InteriorLimits,
         shift: float,
         slack: float,
+        relative: bool,
     ) -> int:
         """Factorise; the number of positive pivots, of which as many as variables are right. -1
         where a pivot is zero or not finite.
@@ -70,8 +71,9 @@ class BarrierSystem:
             A: (m, n).
             shift: δ.
             slack: what is subtracted from the rows' diagonal, for rows that depend on each other.
+            relative: whether δ counts in the size of each variable.
         """
-        return self.factorise_weighted(H, A, weights_of(at, box, shift, slack))
+        return self.factorise_weighted(H, A, weights_of(at, box, shift, slack, relative))
 
     def factorise_weighted(self, H: SparseMatrix, A: SparseMatrix, weights: SystemWeights) -> int:
         """The same with weights as given."""
@@ -105,12 +107,13 @@ class BarrierSystem:
 
 @njit(cache=True, error_model="numpy")
 def weights_of(
-    at: InteriorIterate, box: InteriorLimits, shift: float, slack: float
+    at: InteriorIterate, box: InteriorLimits, shift: float, slack: float, relative: bool
 ) -> SystemWeights:
     k, m = len(at.v), len(at.y)
     n = k - m
-    sigma, exact, units = np.full(k, shift), np.zeros(k), np.ones(m)
+    sigma, exact, units = np.empty(k), np.zeros(k), np.ones(m)
     for j in range(k):
+        sigma[j] = shift / max(1.0, abs(at.v[j])) ** 2 if relative else shift
         if box.held[j]:
             exact[j] = 1.0 if j < n else -slack
             continue

@@ -20,6 +20,7 @@ from .problem import QpSolution, QpStatus, QuadraticProgram
 
 _PATIENCE = 3
 _NO_MULTIPLIER = 1e-10
+_LEAP, _ON_THE_WAY = 100.0, 1e-9
 
 
 @dataclass(slots=True)
@@ -65,12 +66,19 @@ def settled(
         systems: how many at most; fewer are solved where the wrong sides do not get fewer. Whether
             the set had come to rest by then, `error` tells.
     """
-    found = None
+    found = before = None
     fewest, patience = np.inf, _PATIENCE
     for _ in range(systems):
         found = _of(qp, guess, saddle)
         if found is None:
             return None
+        if before is not None and _contradictory(found, before):
+            fewer = _without_first(qp, guess, before, found)
+            if fewer is None:
+                break
+            guess = fewer
+            continue
+        before = found
         shown = shown_by(qp, found.d, found.y, found.z)
         wrong = int(np.count_nonzero(shown.sides != guess.sides))
         patience = _PATIENCE if wrong < fewest else patience - 1
@@ -79,6 +87,35 @@ def settled(
         fewest = min(fewest, wrong)
         guess = shown
     return found
+
+
+def _contradictory(found: QpSolution, before: QpSolution) -> bool:
+    """Whether more sides are expected to hold than can: nothing else makes multipliers leap so."""
+    return _largest(found) > _LEAP * max(1.0, _largest(before))
+
+
+def _largest(found: QpSolution) -> float:
+    sizes = np.abs(found.y).max(initial=0.0), np.abs(found.z).max(initial=0.0)
+    return float(max(sizes))
+
+
+def _without_first(
+    qp: QuadraticProgram, guess: WorkingSet, before: QpSolution, found: QpSolution
+) -> WorkingSet | None:
+    """The sides but the one whose multiplier is zero first on the way from one solution towards
+    that of a system which contradicts itself, as the dual simplex method chooses it; None if none
+    is."""
+    old = np.concatenate([before.y, before.z])
+    way = np.concatenate([found.y, found.z]) - old
+    equal = np.concatenate([qp.lower == qp.upper, qp.d_lower == qp.d_upper])
+    falls = (guess.sides * way < -_ON_THE_WAY * float(np.abs(way).max())) & ~equal
+    if not falls.any():
+        return None
+    shares = np.full(len(way), np.inf)
+    shares[falls] = np.abs(old[falls] / way[falls])
+    sides = guess.sides.copy()
+    sides[int(np.argmin(shares))] = 0
+    return WorkingSet(guess.rows, sides)
 
 
 def error(qp: QuadraticProgram, found: QpSolution) -> float:

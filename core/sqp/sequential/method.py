@@ -28,6 +28,7 @@ from ..qp.problem import QpSolution
 from ..verdict import Ending, nothing_to_gain
 from ..workspace import Workspace
 from .feasibility import Feasibility, NowhereError
+from .hot_start import hot_started
 from .model import Model
 from .multipliers import first_multipliers, own_curvature, steepest_descent
 from .restoration import Restoration, RestorationOutcome
@@ -137,6 +138,8 @@ class Sequential:
         length, kind = 0.0, ""
         while True:
             at = self._visit(point, length, kind)
+            if not kind and not self.progress.iterations:
+                self._hot_start(point)
             step = self._step(point, at)
             old, point = point, step.point
             length, kind = step.length, step.kind
@@ -146,6 +149,10 @@ class Sequential:
             still = size <= _ROUNDING * max(1.0, float(np.abs(point.x).max()))
             self.stalls = self.stalls + 1 if still else 0
             self.progress.iterations += 1
+
+    def _hot_start(self, point: Point) -> None:
+        progress, options = self.progress, self.options
+        hot_started(point, self.problem, self.hessian, self.workspace, options, progress)
 
     def _visit(self, point: Point, length: float, kind: str) -> OptimalityResiduals:
         return self.progress.visit(point, self.multipliers, length, kind, self.model.shift)

@@ -6,9 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from flyby.core.arrays import FloatArray
-from flyby.core.sqp import NLP, BackendKind, HessianKind, Iteration, NlpError, Status
+from flyby.core.sqp import NLP, BackendKind, HessianKind, Iteration, NlpError, Status, solve
+from flyby.validation.textbook import DoubleIntegrator
 from flyby.validation.trajectories.jets import exp, sin
 
 from .honesty import solved
@@ -222,6 +225,41 @@ def test_warm_starts_of_random_problems_with_perturbed_data() -> None:
         totals[1] += near.iterations
         assert near.success
     assert totals[1] <= 0.6 * totals[0]
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(-0.2, 0.2), st.floats(-0.2, 0.2))
+def test_a_moved_switching_point_takes_few_steps_and_no_back_end(x: float, v: float) -> None:
+    """The active set of a minimum-time motion is a vertex: what enters it makes another leave."""
+    before = DoubleIntegrator(60)
+    known = solve(before.nlp(), before.initial_guess())
+    moved = DoubleIntegrator(60, start=(4.0 + x, 1.0 + v))
+    warm = solved(moved.nlp(), known.x, warm_start=known)
+    cold = solved(moved.nlp(), moved.initial_guess())
+    assert warm.success and warm.objective == pytest.approx(cold.objective, rel=1e-5)
+    assert warm.iterations <= 6 and warm.timings.subproblems == 0.0
+
+
+def test_a_warm_start_leads_to_no_maximum() -> None:
+    nlp = nlp_from(lambda x: (-(x**2), []), 1, lower=[-1.0], upper=[2.0])
+    top = solve(nlp, [0.0])
+    assert top.x[0] == 0.0
+    found = solved(nlp, [0.1], warm_start=top)
+    assert found.objective <= -1.0
+
+
+@pytest.mark.parametrize("most", [0, 1])
+def test_a_warm_start_keeps_to_the_iterations_that_it_may_take(most: int) -> None:
+    before = solved(chained(0.0), np.full(10, 0.4))
+    seen: list[int] = []
+    solve(
+        chained(0.05),
+        before.x,
+        warm_start=before,
+        max_iterations=most,
+        callback=lambda it: seen.append(it.number),
+    )
+    assert seen == list(range(most + 1))
 
 
 def test_a_warm_start_from_another_problem_does_no_harm() -> None:

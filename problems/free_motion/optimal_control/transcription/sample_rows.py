@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .....core.arrays import FloatArray
@@ -10,6 +12,9 @@ from ..motion.layout import VariableLayout
 from ..task.limits import TorqueLimits
 from ..task.sampled import State, TcpSpeed, TorqueField
 from .rows import Places
+
+Curvature = Callable[[FloatArray], FloatArray]
+"""Symmetric blocks (Z, k, k) → what stands for them in the Hessian."""
 
 
 class SamplePlaces:
@@ -50,12 +55,20 @@ class TorqueRows:
         layout: the variables.
         field: torques.
         limits: of the torques.
+        curvature: what stands for its second derivatives.
     """
 
-    def __init__(self, layout: VariableLayout, field: TorqueField, limits: TorqueLimits) -> None:
+    def __init__(
+        self,
+        layout: VariableLayout,
+        field: TorqueField,
+        limits: TorqueLimits,
+        curvature: Curvature,
+    ) -> None:
         self._places = SamplePlaces(layout, field.scale)
         self._field = field
         self._limits = limits
+        self._curvature = curvature
         count = len(self._places) * len(limits.axis)
         self.lower, self.upper = -np.ones(count), np.ones(count)
 
@@ -94,7 +107,7 @@ class TorqueRows:
         np.add.at(sped.T, axis, (y * slope).T)
         H = bends_where(self._field, state, S, driven)
         H += self._field.rate_bends(state, S, sped)
-        return convex_part(H).ravel()
+        return self._curvature(H).ravel()
 
 
 def convex_part(H: FloatArray) -> FloatArray:
@@ -105,6 +118,12 @@ def convex_part(H: FloatArray) -> FloatArray:
     """
     values, vectors = np.linalg.eigh(H)
     return np.asarray(np.einsum("zij,zj,zkj->zik", vectors, np.maximum(values, 0.0), vectors))
+
+
+def exact(H: FloatArray) -> FloatArray:
+    """Blocks (Z, k, k) as they are, for methods that take indefinite Hessians: with energy fewer
+    limits are active, and what `convex_part` leaves out costs most iterations."""
+    return H
 
 
 def bends_where(field: TorqueField, state: State, S: float, weights: FloatArray) -> FloatArray:
@@ -126,11 +145,20 @@ class TcpSpeedRows:
         speed: of the TCP.
         limit: m/s.
         scale: T₀, s.
+        curvature: what stands for its second derivatives.
     """
 
-    def __init__(self, layout: VariableLayout, speed: TcpSpeed, limit: float, scale: float) -> None:
+    def __init__(
+        self,
+        layout: VariableLayout,
+        speed: TcpSpeed,
+        limit: float,
+        scale: float,
+        curvature: Curvature,
+    ) -> None:
         self._places = SamplePlaces(layout, scale)
         self._speed, self._square = speed, limit**2
+        self._curvature = curvature
         count = len(self._places)
         self.lower, self.upper = np.full(count, -np.inf), np.ones(count)
 
@@ -159,7 +187,7 @@ class TcpSpeedRows:
     def hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
         y = multipliers[:, None] / self._square
         bends = self._speed.bends(self._places.state(x), float(x[0]), y)
-        return convex_part(bends).ravel()
+        return self._curvature(bends).ravel()
 
 
 class EnergyTerm:
@@ -171,6 +199,7 @@ class EnergyTerm:
         consumption: what is integrated.
         scale: T₀, s.
         width: W, of the kink; see `Consumption.rounded`.
+        curvature: what stands for its second derivatives.
     """
 
     def __init__(
@@ -180,9 +209,11 @@ class EnergyTerm:
         consumption: Consumption,
         scale: float,
         width: float,
+        curvature: Curvature = convex_part,
     ) -> None:
         self._layout, self._field, self._scale = layout, field, scale
         self._consumption, self._width = consumption, width
+        self._curvature = curvature
         self._places = SamplePlaces(layout, scale)
         self._interval, self._sample, self._share = layout.quadrature
 
@@ -264,7 +295,7 @@ class EnergyTerm:
         H[:, -1, :] += 0.5 / S * local
         H[:, -1, -1] -= 0.25 / S**2 * found.value
         time = self._scale * np.sqrt(S)
-        blocks = (factor * time * self._weights(x)[:, None, None] * convex_part(H)).ravel()
+        blocks = (factor * time * self._weights(x)[:, None, None] * self._curvature(H)).ravel()
         if not self._layout.stretches:
             return np.asarray(blocks)
         local[:, -1] += 0.5 / S * found.value

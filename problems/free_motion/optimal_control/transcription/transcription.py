@@ -1,8 +1,8 @@
 """A task as a sparse nonlinear program.
 
 Where only time counts the objective is S / 2, which has its minimum where T has and is linear. The
-Hessian is a convex one: what torques and the energy bend the wrong way is left out (see
-`sample_rows.convex_part`), and so is the concavity of √S.
+Hessian is a convex one unless an exact one is asked for: what torques and the energy bend the
+wrong way is left out (see `sample_rows.convex_part`), and so is the concavity of √S.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .rows import (
     link_rows,
     velocity_rows,
 )
-from .sample_rows import EnergyTerm, TcpSpeedRows, TorqueRows
+from .sample_rows import EnergyTerm, TcpSpeedRows, TorqueRows, convex_part, exact
 
 _SHORTEST, _LONGEST = 1e-4, 400.0
 """Least and largest S."""
@@ -75,6 +75,7 @@ class Transcription:
         energy_unit: E₀; None where only time counts.
         plant: equations of motion; None where torques play no part.
         margins: at samples and nodes; None for none.
+        indefinite: whether the Hessian is exact.
     """
 
     def __init__(
@@ -86,17 +87,21 @@ class Transcription:
         energy_unit: float | None,
         plant: Plant | None,
         margins: Margins | None = None,
+        indefinite: bool = False,
     ) -> None:
         self.task, self.limits, self.layout, self.scale = task, limits, layout, scale
         self._field = None if plant is None else TorqueField(plant, scale)
         self._margins = margins
+        self._curvature = exact if indefinite else convex_part
         self._blocks: list[ConstraintRows] = self._make_rows()
         self._energy = None
         if energy_unit is not None:
             assert self._field is not None
             width = task.objective.smoothing * energy_unit / scale
             consumption = task.objective.consumption
-            self._energy = EnergyTerm(layout, self._field, consumption, scale, width)
+            self._energy = EnergyTerm(
+                layout, self._field, consumption, scale, width, self._curvature
+            )
         self._energy_unit = energy_unit or 1.0
 
     def _make_rows(self) -> list[ConstraintRows]:
@@ -113,11 +118,11 @@ class Transcription:
             if wanted.any():
                 rows.append(GivenVelocity(layout.d[point], wanted * scale))
         if self._field is not None and limits.dynamic:
-            torque = TorqueRows(layout, self._field, limits.torques)
+            torque = TorqueRows(layout, self._field, limits.torques, self._curvature)
             rows.append(torque if self._margins is None else torque.tightened(self._margins.torque))
         if np.isfinite(limits.tcp_speed):
             speed = TcpSpeed(self.task, scale)
-            tcp = TcpSpeedRows(layout, speed, limits.tcp_speed, scale)
+            tcp = TcpSpeedRows(layout, speed, limits.tcp_speed, scale, self._curvature)
             rows.append(tcp if self._margins is None else tcp.tightened(self._margins.tcp_speed))
         return [block for block in rows if block is not None]
 
@@ -139,6 +144,15 @@ class Transcription:
         weight = self.task.objective.time_weight
         out[0] = 0.5 * weight / np.sqrt(x[0])
         return out + (1.0 - weight) / self._energy_unit * self._energy.gradient(x)
+
+    @property
+    def bends_root(self) -> bool:
+        """Whether the objective has a concave √S that the Hessian shows."""
+        return self._energy is not None and self._curvature is exact
+
+    def root_bend(self, x: FloatArray) -> float:
+        """Second derivative of the objective's √S."""
+        return float(-0.25 * self.task.objective.time_weight * x[0] ** -1.5)
 
     # The program
 
@@ -196,6 +210,8 @@ class _Program:
         places = [self._rows.hessian_places]
         if self._owner._energy is not None:
             places.append(self._owner._energy.hessian_places)
+        if self._owner.bends_root:
+            places.append((np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)))
         rows, columns = (np.concatenate([p[i] for p in places]) for i in (0, 1))
         size = self._owner.layout.size
         return MatrixEntries(rows, columns, (size, size))
@@ -208,6 +224,8 @@ class _Program:
         if owner._energy is not None:
             part = (1.0 - owner.task.objective.time_weight) / owner._energy_unit * factor
             parts.append(owner._energy.hessian(x, part))
+        if owner.bends_root:
+            parts.append(np.array([factor * owner.root_bend(x)]))
         return self._hessian_entries.matrix(np.concatenate(parts))
 
     def nlp(self, bounds: Bounds) -> NLP:

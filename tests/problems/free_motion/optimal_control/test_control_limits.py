@@ -128,6 +128,16 @@ def test_more_weight_on_energy_takes_longer_and_less() -> None:
     assert energies[0] > energies[1] > energies[2]
 
 
+@pytest.mark.parametrize("weight", [0.05, 0.5])
+def test_energy_without_obstacles_takes_few_iterations(weight: float) -> None:
+    task = arm_task(objective=MotionObjective(weight))
+    found = optimize(task, effort=MotionEffort(intervals=30))
+    assert found.converged and found.audit.holds(1e-3)
+    assert sum(step.iterations for step in found.steps) < 120
+    # No step led to slow motions, where nothing is limited and slopes vanish.
+    assert all(step.candidate < 3.0 * found.time for step in found.steps)
+
+
 def test_motors_that_recuperate_take_less() -> None:
     copper = (1e-4,) * 6
     burnt, given_back = Motors(copper, 0.0), Motors(copper, 0.8)
