@@ -142,6 +142,8 @@ class ZoneKind:
         largest: greatest size.
         unit: size of one unit in which it is written: 0.01 of percents, 0.001 of mm.
         step: size that it is written in multiples of; 0 for any.
+        sizes: the only sizes that there are, rising; they are called by their numbers, from 1
+            (Yaskawa ``PL=3``). Empty for any size.
 
     Raises:
         InputError: a number makes no sense.
@@ -152,6 +154,7 @@ class ZoneKind:
     largest: float = 1.0
     unit: float = 0.01
     step: float = 0.01
+    sizes: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         _check("ZoneKind", largest=self.largest, unit=self.unit, step=self.step)
@@ -163,7 +166,9 @@ class ZoneKind:
         return VendorZone(self, min(size, self.largest)) if size > 0.0 else FINE
 
     def rounded(self, size: float) -> float:
-        """The greatest size not above another one that can be written."""
+        """The greatest size not above another one that can be written; 0 for none."""
+        if self.sizes:
+            return max((one for one in self.sizes if one <= size * (1 + 1e-9)), default=0.0)
         size = min(size, self.largest)
         if self.step == 0.0:
             return size
@@ -211,6 +216,8 @@ class VendorZone:
         return replace(self, size=min(size, self.kind.largest)) if size > 0.0 else FINE
 
     def __str__(self) -> str:
+        if self.size in self.kind.sizes:
+            return f"{self.kind.word} {self.kind.sizes.index(self.size) + 1}"
         behind = f",{self.size * self.ratio / self.kind.unit:.4g}" if self.ratio != 1.0 else ""
         return f"{self.kind.word} {self.size / self.kind.unit:.4g}{behind}"
 

@@ -1,0 +1,1 @@
+"""Yaskawa for flyby: arms, how their controllers drive, and jobs (JBI)."""
