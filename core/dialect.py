@@ -325,6 +325,8 @@ class Dialect:
         arc_orientations: how the tool may turn along arcs.
         orientation: the form in which it says rotations.
         in_si: whether lengths are said in m and angles in rad, not in mm and degrees.
+        length_decimals, angle_decimals: decimals that controllers keep of them; None for as many
+            as one likes.
         rigid_arcs: whether a tool that follows an arc keeps its orientation to the arc, whatever
             orientation the arc's end has.
         share_step: by what step shares of joint speed and acceleration are said.
@@ -360,6 +362,8 @@ class Dialect:
     arc_orientations: frozenset[ArcOrientation] = frozenset(ArcOrientation)
     orientation: Orientation = Orientation.QUATERNION
     in_si: bool = False
+    length_decimals: int | None = None
+    angle_decimals: int | None = None
     rigid_arcs: bool = False
     share_step: float = 0.01
     least_acceleration_share: float = 0.01

@@ -56,18 +56,21 @@ class Rounding:
         in_si: whether the language says lengths in m and angles in rad, not in mm and degrees.
         orientation: the form in which it says rotations.
         predefined: zones with a radius are to be chosen from these; empty for zones of any size.
+        decimals: of lengths and of angles that the language's controllers keep; None for any.
     """
 
     in_si: bool = False
     orientation: Orientation = Orientation.QUATERNION
     predefined: tuple[Radius, ...] = ()
+    decimals: tuple[int | None, int | None] = (None, None)
 
     @classmethod
     def of(cls, dialect: Dialect | None, predefined: Sequence[Radius] = ()) -> Rounding:
         """For a language; None for one that is not described."""
         if dialect is None:
             return cls(predefined=tuple(predefined))
-        return cls(dialect.in_si, dialect.orientation, tuple(predefined))
+        decimals = dialect.length_decimals, dialect.angle_decimals
+        return cls(dialect.in_si, dialect.orientation, tuple(predefined), decimals)
 
     def angle(self, value: float, lower: float = -math.inf, upper: float = math.inf) -> float:
         """An angle, rad, that stays within its bounds.
@@ -140,12 +143,19 @@ class Rounding:
         )
 
     def _length(self, rule: _Rule, value: float, per_mm: int) -> float:
-        return rule(value, 1000 * per_mm) if self.in_si else rule(1000 * value, per_mm) / 1000
+        if self.in_si:
+            return rule(value, _at_most(1000 * per_mm, self.decimals[0]))
+        return rule(1000 * value, _at_most(per_mm, self.decimals[0])) / 1000
 
     def _angle(self, rule: _Rule, value: float, per_degree: int) -> float:
         if self.in_si:
-            return rule(value, _PER_RADIAN * per_degree)
-        return math.radians(rule(math.degrees(value), per_degree))
+            return rule(value, _at_most(_PER_RADIAN * per_degree, self.decimals[1]))
+        return math.radians(rule(math.degrees(value), _at_most(per_degree, self.decimals[1])))
+
+
+def _at_most(per_unit: int, decimals: int | None) -> int:
+    """Steps in a unit, no more than decimals tell apart."""
+    return per_unit if decimals is None else min(per_unit, 10**decimals)
 
 
 def _nearest(value: float, per_unit: int) -> float:

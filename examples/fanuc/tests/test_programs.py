@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, SourceError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.program.move import MoveC, MoveJ, Opaque, Wait
+from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
@@ -177,7 +177,6 @@ def test_what_an_offset_makes_is_no_number_of_the_text() -> None:
         ("CALL WELD", r"unknown routine 'WELD'.*skip"),
         ("ENDFOR", "no block is open here"),
         ("IF R[1]=1 THEN", "has no end"),
-        ("A P[1] 100mm/sec FINE", "arcs by A are not read: teach them by C"),
         ("L P[2] 100mm/sec FINE", r"UTOOL\[3\] is not known: put framevar.va"),
     ],
 )
@@ -234,3 +233,16 @@ def test_one_case_of_a_selection_is_done(chosen: int) -> None:
     job = text(f"R[1]={chosen}", *cases, "L P[1] 100mm/sec FINE", positions=pose(1, 400))
     program = FANUC.read(job + routines, "job.ls", entry="job")
     assert [s.duration for s in program.statements if isinstance(s, Wait)] == [chosen]
+
+
+def test_arcs_by_a_go_through_every_second_position() -> None:
+    lines = [f"A P[{k}] 100mm/sec CNT100" for k in (1, 2, 3, 4, 5)]
+    places = "".join(
+        pose(k, x).replace("Y =      .000", f"Y = {y:9.3f}")
+        for k, (x, y) in enumerate([(400, 0), (420, 20), (400, 40), (380, 60), (400, 80)], 1)
+    )
+    moves = FANUC.read(text(*lines, positions=places), "job.ls").moves
+    assert [type(m) for m in moves] == [MoveL, MoveC, MoveC]
+    assert moves[2].via.pose.position == pytest.approx((0.38, 0.06, 0.1))
+    with pytest.raises(SourceError, match="the arc before has no end"):
+        FANUC.read(text(*lines[:2], "L P[3] 9mm/sec FINE", positions=places), "job.ls")

@@ -119,3 +119,14 @@ def test_rotations_have_few_digits_in_every_form(numbers: tuple[float, ...]) -> 
 def test_languages_say_how(vendor: str, in_si: bool) -> None:
     assert Rounding.of(find_vendor(vendor).speaks).in_si is in_si
     assert Rounding.of(None) == Rounding()
+
+
+@given(value=st.floats(-3.0, 3.0))
+def test_no_more_decimals_are_written_than_controllers_keep(value: float) -> None:
+    rounding = Rounding(decimals=(1, 2))
+    degrees = math.degrees(rounding.angle(value))
+    assert degrees == pytest.approx(round(degrees, 2), abs=1e-9)
+    assert abs(degrees - math.degrees(value)) <= 0.005 + 1e-9
+    free = np.full(3, np.inf)
+    (x, *_) = rounding.position((value, 0.0, 0.0), -free, free)
+    assert 1000 * x == pytest.approx(round(1000 * x, 1), abs=1e-9)

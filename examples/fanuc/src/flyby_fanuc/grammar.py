@@ -107,7 +107,8 @@ class Grammar:
 
     def __init__(self) -> None:
         self._selected: Datum | None = None
-        self._arc: re.Match[str] | None = None
+        self._middle: re.Match[str] | None = None
+        self._points = 0
 
     def statement(self, line: Line) -> Statement | None:
         """One line; a comment says nothing."""
@@ -144,9 +145,20 @@ class Grammar:
         return Kept(line.span, name, "what it does is not known", name.upper() == "PAUSE")
 
     def _motion(self, line: Line, found: re.Match[str]) -> Statement | None:
-        if found["kind"].upper() == "A":
-            raise ValueError("arcs by A are not read: teach them by C, with both positions")
-        return drive(line, found)
+        """Of arcs by ``A`` the first goes to where they begin, the next through, then to an end."""
+        if found["kind"].upper() != "A":
+            if self._middle is not None:
+                raise ValueError("the arc before has no end: arcs by A have three positions")
+            self._points = 0
+            return drive(line, found)
+        self._points += 1
+        if self._points == 1:
+            return drive(line, found, "L")
+        if self._points % 2 == 0:
+            self._middle = found
+            return None
+        middle, self._middle = self._middle, None
+        return drive(line, found, "C", middle)
 
     def if_(self, line: Line, found: re.Match[str]) -> Statement:
         """``IF R[1]=1,JMP LBL[2]``, ``IF (DI[1]) THEN``"""

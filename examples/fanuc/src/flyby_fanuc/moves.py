@@ -79,18 +79,25 @@ def numbers_of(target: Target) -> tuple[float, ...]:
     return (*(1000 * v for v in target.pose.position), *map(math.degrees, turns))
 
 
-def drive(line: Line, found: re.Match[str], arc: str = "") -> Drive:
-    """A motion instruction; ``arc``: what an ``A`` is driven as."""
+def drive(
+    line: Line, found: re.Match[str], arc: str = "", middle: re.Match[str] | None = None
+) -> Drive:
+    """A motion instruction.
+
+    Args:
+        arc: what an ``A`` is driven as.
+        middle: the ``A`` that is driven through on the way.
+    """
     source = line.source
 
-    def operand(name: str) -> Operand:
-        span = source.span(*found.span(name))
-        datum = parse(source, *found.span(name))
+    def operand(of: re.Match[str], name: str) -> Operand:
+        span = source.span(*of.span(name))
+        datum = parse(source, *of.span(name))
         assert isinstance(datum, Datum)
         return Operand(span, point=datum)
 
     kind = arc or found["kind"].upper()
-    if (kind == "C") != bool(found["end"]):
+    if middle is None and (kind == "C") != bool(found["end"]):
         raise ValueError("C has two positions, J, L and A have one")
     options = _options(line, found)
     amounts = [found.span("speed")] if found["speed"] else []
@@ -132,8 +139,9 @@ def drive(line: Line, found: re.Match[str], arc: str = "") -> Drive:
             orientation=ArcOrientation.FIXED_FRAME,
         )
 
-    last = operand("end") if found["end"] else operand("point")
-    via_point = operand("point") if found["end"] else None
+    last = operand(found, "end" if found["end"] else "point")
+    through = middle or (found if found["end"] else None)
+    via_point = None if through is None else operand(through, "point")
     return Drive(line.span, last, speed, zone, build, via_point)
 
 
