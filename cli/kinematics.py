@@ -128,6 +128,8 @@ def _label_json(label: Configuration | None) -> dict[str, Any] | None:
 def _label_text(label: Configuration | None) -> str:
     """The same in one line; parts that are whole lists (UR's joint values) say nothing new."""
     parts = _label_json(label) or {}
+    if any(isinstance(part, str) for part in parts.values()):
+        return str(label)  # words that a controller shows
     return " ".join(f"{k}={v}" for k, v in parts.items() if not isinstance(v, tuple))
 
 

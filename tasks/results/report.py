@@ -18,7 +18,7 @@ from ...core.motion.emulator.run import Run
 from ...core.notebook import table
 from ...core.program.move import Move
 from ...core.program.target import JointTarget
-from ...core.program.zone import Fine, Radius
+from ...core.program.zone import Fine, Radius, VendorZone
 from ...core.robot.model import Robot
 from ..options.texts import fixed
 
@@ -331,7 +331,7 @@ def _spans(run: Run) -> _Spans:
 def _zone(move: Move, reach: tuple[float, float]) -> ZoneReport:
     zone = move.zone
     return ZoneReport(
-        kind=type(zone).__name__.lower(),
+        kind=type(zone).__name__.lower() if not isinstance(zone, VendorZone) else str(zone),
         name=getattr(zone, "name", "fine" if isinstance(zone, Fine) else None),
         radius=zone.tcp if isinstance(zone, Radius) else None,
         entry=reach[0],

@@ -306,6 +306,10 @@ def _forms() -> list:
         (form(r"LBL\[\s*(\d+)\s*\]"), lambda g, line, m: Label(line.span, m[1])),
         (form(r"JMP\s+LBL\[\s*(\d+)\s*\]"), lambda g, line, m: Jump(line.span, m[1])),
         (form(r"CALL\s+(?P<name>[\w-]+)\s*(?:\((?P<given>.*)\))?"), Grammar.call),
+        (
+            form(r"PAYLOAD\[.*\]"),
+            lambda g, line, m: Kept(line.span, "PAYLOAD", "its mass stands on the controller"),
+        ),
         (form(r"END"), lambda g, line, m: Return(line.span)),
         (form(r"ABORT"), lambda g, line, m: End(line.span)),
         (form(r"IF\b.*"), Grammar.if_),
