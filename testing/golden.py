@@ -48,6 +48,7 @@ from ..core.program.event import Event
 from ..core.program.move import MoveC, Opaque, Statement, Wait
 from ..core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from ..core.program.target import JointTarget, Target
+from ..core.program.zone import zone_word
 from ..core.spatial.pose import Pose
 
 UNITS = {
@@ -244,8 +245,8 @@ def terms_of(statement: Statement, signals: SignalWords | None = None) -> dict[s
     if isinstance(statement, MoveC):
         found |= {**dict(_target(statement.via, "via.")), "arc": str(statement.orientation)}
     found |= {f"speed.{f.name}": getattr(statement.speed, f.name) for f in fields(statement.speed)}
-    found["zone.kind"] = type(zone).__name__
     found |= {f"zone.{f.name}": getattr(zone, f.name) for f in fields(zone)}
+    found["zone.kind"] = zone_word(zone)
     found |= dict(_frame(statement.tool.tcp, "tool."))
     found |= {
         "tool.robot_held": statement.tool.robot_held,
@@ -291,9 +292,12 @@ def _event(event: Event, signals: SignalWords | None) -> dict[str, Any]:
 _SPEED = (
     *("tcp", "reorientation", "external_linear", "external_angular", "joint", "joint_fraction"),
     *("tcp_acceleration", "reorientation_acceleration", "joint_acceleration"),
-    *("joint_acceleration_fraction", "jerk_fraction", "duration", "name"),
+    *("joint_acceleration_fraction", "acceleration_override", "jerk_fraction", "duration", "name"),
 )
-_ZONE = ("kind", "tcp", "reorientation", "external", "angle", "external_linear")
+_ZONE = (
+    *("kind", "tcp", "reorientation", "external", "angle", "external_linear"),
+    *("size", "ratio"),
+)
 _MOVE = (
     *_BESIDE,
     *("joints", "external", "position", "quaternion", "configuration"),

@@ -11,7 +11,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from ..core.arrays import FloatArray
-from ..core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Statement, Wait
+from ..core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..core.program.program import Program
 from ..core.program.speed import Speed
 from ..core.program.target import Configuration, JointTarget, PoseTarget, Target
@@ -179,6 +179,8 @@ class Parts:
         load: that the tool carries.
         labelled: whether targets of a kind of move have a label of configuration.
         arc: how the tool turns along arcs.
+        acting: what a move does on its way: the move with its events.
+        kept: statements that are kept as text, between moves that stop.
     """
 
     zone: OfKind[Zone]
@@ -189,6 +191,8 @@ class Parts:
     load: st.SearchStrategy[Load | None] = _NOTHING
     labelled: Callable[[type[Move]], bool] = lambda _: True
     arc: st.SearchStrategy[ArcOrientation] = _FOLLOWS_ARC
+    acting: Callable[[Move], st.SearchStrategy[Move]] = st.just
+    kept: st.SearchStrategy[Opaque] | None = None
 
 
 @dataclass(frozen=True)
@@ -209,7 +213,7 @@ def programs(
     max_moves: int = 6,
     kinds: Sequence[type[Move]] = (MoveJ, MoveL, MoveC),
 ) -> Program:
-    """Programs of joint, linear and circular moves and waits that the robot can drive.
+    """Programs of moves, waits and kept statements that the robot can drive.
 
     They begin with a joint move to a stop; linear and circular moves are short and keep away
     from singular postures, so that the configuration can be held.
@@ -226,8 +230,12 @@ def programs(
     statements: list[Statement] = [_carrying(draw, first, choice)]
     for _ in range(draw(st.integers(1, max_moves))):
         move, q = _move(draw, kinds, robot, q, label, parts, choice)
-        statements.append(move)
-        if draw(st.booleans()) and move.zone == FINE:
+        statements.append(draw(parts.acting(move)))
+        if move.zone != FINE:
+            continue
+        if parts.kept is not None and draw(st.booleans()):
+            statements.append(draw(parts.kept))
+        if draw(st.booleans()):
             statements.append(Wait(draw(st.integers(0, 20)) / 10))
     return Program(tuple(statements), start=start)
 
@@ -303,7 +311,7 @@ def _move(
     *through, end = (x for x in ends if x is not None)
     line = _said(draw, MoveL, robot, end, parts, choice)
     poses = [_target_of(line, robot, x).pose for x in (q, *through, end)]
-    kind = MoveC if through and _make_an_arc(*poses) else MoveL
+    kind = MoveC if through and make_an_arc(*poses) else MoveL
     label = label if parts.labelled(kind) else None
     *via, target = (_target_of(line, robot, x, label) for x in (*through, end))
     if kind is MoveL:
@@ -359,7 +367,7 @@ def _near(draw: st.DrawFn, robot: Robot, q: FloatArray) -> FloatArray | None:
     return None
 
 
-def _make_an_arc(start: Pose, via: Pose, end: Pose) -> bool:
+def make_an_arc(start: Pose, via: Pose, end: Pose) -> bool:
     """Whether three points lie apart and off a line, the second one between the others."""
     a, b, c = (np.array(pose.position) for pose in (start, via, end))
     first, second = b - a, c - b
@@ -400,71 +408,3 @@ def _pose(position: tuple[float, float, float], turn: tuple[float, float, float]
     matrix[:3, :3] = matrix_from_rotation_vector(np.array(turn))
     matrix[:3, 3] = position
     return Pose.from_matrix(matrix)
-
-
-@st.composite
-def crowded_programs(
-    draw: st.DrawFn, robot: Robot, q: FloatArray, joint: Speed, path: Speed, turning: ArcOrientation
-) -> Program:
-    """Programs whose zones are large for their legs: lines, arcs and joint moves of millimetres to
-    decimetres, all turned alike, whose zones are few, so that many of them are one datum.
-
-    Args:
-        robot: the robot.
-        q: (N,), a regular configuration that they stay near.
-        joint, path: speeds of joint moves, and of lines and arcs.
-        turning: of the tool along arcs.
-    """
-    statements: list[Statement] = [MoveJ(joint_target(robot, q), joint, FINE)]
-    home = robot.flange_pose(q)
-    shared = draw(st.lists(st.integers(2, 60), min_size=1, max_size=2))
-    radii = st.sampled_from([0.0, 0.001, *(1e-3 * radius for radius in shared)])
-    place = np.array(home.position)
-    count = draw(st.integers(3, 6))
-    for number in range(count):
-        zone: Zone = FINE
-        if number < count - 1:
-            radius = draw(radii)
-            zone = Radius(radius) if radius else FINE
-        step = draw(st.sampled_from([0.004, 0.01, 0.03, 0.1]))
-        way = np.array([draw(st.floats(-1.0, 1.0, allow_subnormal=False)) for _ in range(3)])
-        assume(np.linalg.norm(way) > 0.3)
-        place = np.clip(place + step * way, np.array(home.position) - 0.12, None)
-        place = np.minimum(place, np.array(home.position) + 0.12)
-        x, y, z = (round(float(v), 5) for v in place)
-        end = replace(home, position=(x, y, z))
-        kind = draw(st.sampled_from([MoveL, MoveL, MoveC, MoveJ]))
-        if kind is MoveC:
-            begin = replace(home, position=_end_of(statements[-1], robot))
-            last = np.array(begin.position)
-            side = np.array([draw(st.floats(-1.0, 1.0, allow_subnormal=False)) for _ in range(3)])
-            via = 0.5 * (last + place) + 0.4 * step * side
-            a, b, c = (round(float(v), 5) for v in via)
-            middle = replace(home, position=(a, b, c))
-            if _make_an_arc(begin, middle, end):
-                arc = MoveC(
-                    PoseTarget(end),
-                    path,
-                    zone,
-                    via=PoseTarget(middle),
-                    orientation=turning,
-                )
-                statements.append(arc)
-                continue
-            kind = MoveL
-        if kind is MoveJ:
-            rows = [s.q for s in robot.inverse(end)]
-            nearest = min(rows, key=lambda row: float(np.abs(row - q).max()))
-            statements.append(MoveJ(joint_target(robot, np.round(nearest, 6)), joint, zone))
-        else:
-            statements.append(MoveL(PoseTarget(end), path, zone))
-    return Program(tuple(statements))
-
-
-def _end_of(statement: Statement, robot: Robot) -> tuple[float, float, float]:
-    """Where the flange is at the end of a move."""
-    assert isinstance(statement, MoveJ | MoveL | MoveC)
-    target = statement.target
-    if isinstance(target, PoseTarget):
-        return target.pose.position
-    return robot.flange_pose(target.joints).position

@@ -240,6 +240,16 @@ def zone_shown(zone: Zone) -> str:
     return "fine"
 
 
+def kind_of(zone: Zone) -> type[Zone] | ZoneKind:
+    """What kind of zone it is, as dialects list them."""
+    return zone.kind if isinstance(zone, VendorZone) else type(zone)
+
+
+def kind_word(kind: type[Zone] | ZoneKind) -> str:
+    """What a kind of zone is called."""
+    return kind.word if isinstance(kind, ZoneKind) else kind.__name__
+
+
 def zone_word(zone: Zone) -> str:
     """What a zone's kind is called, for messages that refuse it."""
-    return zone.kind.word if isinstance(zone, VendorZone) else type(zone).__name__
+    return kind_word(kind_of(zone))

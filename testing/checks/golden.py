@@ -17,6 +17,7 @@ from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE
+from ...core.program.zone import kind_word, zone_word
 from ...core.source.write.options import OpaqueStyle
 from ...core.spatial.pose import IDENTITY
 from ..golden import LANGUAGE, GoldenText, differences, terms_of
@@ -169,7 +170,7 @@ class GoldenChecks(Subject):
         if spoken is None:
             return
         for words in (spoken.joint, spoken.line, spoken.arc):
-            yield from (f"zone {kind.__name__}" for kind in words.zones)
+            yield from (f"zone {kind_word(kind)}" for kind in words.zones)
             yield from (f"speed {name}" for name in words.speeds)
         if spoken.outputs is not None:
             yield "event"
@@ -182,7 +183,7 @@ class GoldenChecks(Subject):
             yield from ("signal set" for term in terms if term == "sets")
             yield from ("signal waited for" for term in terms if term == "waits")
             if isinstance(statement, Move):
-                yield f"zone {type(statement.zone).__name__}"
+                yield f"zone {zone_word(statement.zone)}"
                 yield from (f"speed {name}" for name in stated_speeds(statement))
                 yield from ("event" for _ in statement.events)
 

@@ -15,19 +15,22 @@ from hypothesis import strategies as st
 from ...core.dialect import SignalWords
 from ...core.errors import FlybyError
 from ...core.language import Sources
-from ...core.program.move import ArcOrientation, Move
+from ...core.program.move import ArcOrientation, Move, Opaque
 from ...core.program.program import Program
+from ...core.program.signal import SetSignal, SignalAction
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget, Target
-from ...core.program.tool import Load, Tool, WorkObject
+from ...core.program.tool import WORLD, Load, Tool, WorkObject
 from ...core.program.zone import Zone
 from ...core.registry import find_vendor
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
 from ...core.source.patch.edits import TOLERANCE, difference
 from ...core.source.write.approach import with_approach
+from ...core.spatial.pose import IDENTITY
 from ...core.vendor import Vendor
 from ..golden import Golden, GoldenRobot, GoldenText
+from ..said import DRIVEN_ZONES, events_in, speeds_in, with_events, words_of, zones_in
 from ..strategies import (
     OfKind,
     Parts,
@@ -122,19 +125,28 @@ class Subject:
 
     def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         """Zones of a kind of move that the language can say and the robots drive."""
-        return zones()
+        spoken = self.vendor.speaks
+        if spoken is None:
+            return zones()
+        kinds = words_of(spoken, kind).zones
+        return zones_in(spoken, tuple(one for one in kinds if one in DRIVEN_ZONES))
 
     def speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
         """Speeds, likewise."""
-        return speeds()
+        spoken = self.vendor.speaks
+        return speeds() if spoken is None else speeds_in(spoken, words_of(spoken, kind), True)
 
     def said_zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
         """All zones that the language can say."""
-        return self.zones(kind)
+        spoken = self.vendor.speaks
+        if spoken is None:
+            return self.zones(kind)
+        return zones_in(spoken, words_of(spoken, kind).zones)
 
     def said_speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
         """All speeds that the language can say."""
-        return self.speeds(kind)
+        spoken = self.vendor.speaks
+        return self.speeds(kind) if spoken is None else speeds_in(spoken, words_of(spoken, kind))
 
     def other_speeds(self, move: Move) -> st.SearchStrategy[Speed]:
         """What a patch can put in the place of a move's speed: what settings say of it stays."""
@@ -150,20 +162,53 @@ class Subject:
 
     def work_objects(self) -> st.SearchStrategy[WorkObject]:
         """Work objects that the language can say."""
-        return work_objects()
+        spoken = self.vendor.speaks
+        if spoken is None or spoken.user_frames:
+            return work_objects()
+        if not spoken.work_objects:
+            return st.just(WORLD)
+        return work_objects().map(lambda one: replace(one, frame=IDENTITY))
 
     def loads(self) -> st.SearchStrategy[Load | None]:
         """Loads that the language can say."""
         return st.none() | loads()
 
     def arcs(self) -> st.SearchStrategy[ArcOrientation]:
-        """How the tool turns along arcs."""
-        return st.sampled_from(ArcOrientation)
+        """How the tool turns along arcs; one that follows an arc rigidly would have to end
+        turned."""
+        rigid = self.vendor.speaks is not None and self.vendor.speaks.rigid_arcs
+        return st.just(ArcOrientation.FIXED_FRAME) if rigid else st.sampled_from(ArcOrientation)
 
     def labelled(self, kind: type[Move]) -> bool:
         """Whether the language states the configurations of a kind of move's targets."""
-        return True
+        spoken = self.vendor.speaks
+        return spoken is None or words_of(spoken, kind).configurations
 
+    def acting(self, move: Move) -> st.SearchStrategy[Move]:
+        """A move with events that the language can say."""
+        outputs = None if self.vendor.speaks is None else self.vendor.speaks.outputs
+        name = self.signal_name(SetSignal("", True))
+        drawn = events_in(outputs, name)
+        return drawn.map(lambda events: with_events(move, events, outputs))
+
+    def kept(self) -> st.SearchStrategy[Opaque] | None:
+        """Statements that are kept as text: those of the golden texts; None if there are none."""
+        found = [
+            replace(statement, span=None)
+            for text in self.golden_texts
+            for statement in self.read_golden(text).statements
+            if isinstance(statement, Opaque)
+        ]
+        return st.sampled_from(found) if found else None
+
+    def signal_name(self, action: SignalAction) -> str:
+        """What a signal of an action may be called."""
+        if self.signals is None:
+            return "5"
+        shown = self.signals.example(action).replace("?", "5")
+        return self.signals.spelt(shown) or shown
+
+    @cache  # noqa: B019 - a suite is as short-lived as its test
     def parts(self) -> Parts:
         """What the language's programs are made of."""
         return Parts(
@@ -175,6 +220,8 @@ class Subject:
             self.loads(),
             self.labelled,
             self.arcs(),
+            self.acting,
+            self.kept(),
         )
 
     @cache  # noqa: B019 - a suite is as short-lived as its test

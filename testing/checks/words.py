@@ -13,7 +13,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import FloatArray
-from ...core.dialect import Dialect, MoveWords, Orientation
+from ...core.dialect import Dialect, Orientation
 from ...core.program.event import Event
 from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Statement
 from ...core.program.origin import Ownership
@@ -22,10 +22,11 @@ from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from ...core.program.speed import Speed
 from ...core.program.target import PoseTarget
 from ...core.program.tool import WORLD, Tool, WorkObject
-from ...core.program.zone import FINE, Fine, Radius, Zone
+from ...core.program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind, kind_of, zone_word
 from ...core.robot.model import Robot
 from ...core.source.patch.edits import alike, reading_of
 from ...core.spatial.pose import Pose
+from ..said import words_of
 from ..strategies import allowed, is_regular, joint_target
 from .golden import stated_speeds
 from .subject import Subject
@@ -93,7 +94,7 @@ class WordsChecks(Subject):
         if outputs is None:
             pytest.skip(f"{self.name} sets no outputs on the way of moves")
         for on in (True, False):
-            name = self._signal_name(SetSignal("", on))
+            name = self.signal_name(SetSignal("", on))
             for event in _places(Event(outputs.switch(name, on))):
                 move = self._plain(MoveL)
                 if not outputs.takes(event, move):
@@ -163,7 +164,7 @@ class WordsChecks(Subject):
         """What must be stated, since the language's own default would be taken, is needed."""
         self.need("reader", "writer")
         for kind in (MoveJ, MoveL, MoveC):
-            words = self.words_of(kind)
+            words = words_of(self.dialect, kind)
             for name in sorted({"tcp", self.dialect.pace} & words.speeds - words.needs):
                 program = self._around(self._plain(kind))
                 sources = self.written(program, self._robot_of_words)
@@ -226,7 +227,7 @@ class WordsChecks(Subject):
     def _plain(self, kind: type[Move]) -> Move:
         """A stop with as few words as the language needs."""
         robot, q = self._robot_of_words, np.array(self._stand)
-        needs = self.words_of(kind).needs
+        needs = words_of(self.dialect, kind).needs
         speed = Speed(**{name: VALUES[name] for name in needs})
         if kind is MoveJ:
             return MoveJ(joint_target(robot, q), speed, FINE)
@@ -242,18 +243,13 @@ class WordsChecks(Subject):
         target = PoseTarget(end, None, external)
         return MoveC(target, speed, FINE, via=through, orientation=turning)
 
-    def words_of(self, kind: type[Move]) -> MoveWords:
-        """What the dialect says of a kind of move."""
-        spoken = self.dialect
-        return {MoveJ: spoken.joint, MoveL: spoken.line, MoveC: spoken.arc}[kind]
-
     def _said_by_moves(self, spoken: Dialect) -> Iterator[_Word]:
         for kind in (MoveJ, MoveL, MoveC):
-            plain, words = self._plain(kind), self.words_of(kind)
+            plain, words = self._plain(kind), words_of(self.dialect, kind)
             called = f"of {kind.__name__}"
             for zone in (FINE, *(a_zone(one) for one in words.zones)):
                 move = replace(plain, zone=zone)
-                yield _Word(f"zone {type(zone).__name__} {called}", move, _zone)
+                yield _Word(f"zone {zone_word(zone)} {called}", move, _zone)
             for name in sorted(words.speeds):
                 speed = replace(plain.speed, **{name: VALUES[name]})
                 move = replace(plain, speed=speed)
@@ -285,18 +281,11 @@ class WordsChecks(Subject):
 
     # ------------------------------------------------------------------- signals
 
-    def _signal_name(self, action: SignalAction) -> str:
-        """What a signal may be called."""
-        if self.signals is None:
-            return "5"
-        shown = self.signals.example(action).replace("?", "5")
-        return self.signals.spelt(shown) or shown
-
     def _actions(self) -> Iterator[SignalAction]:
         for on in (True, False):
-            yield SetSignal(self._signal_name(SetSignal("", on)), on)
+            yield SetSignal(self.signal_name(SetSignal("", on)), on)
             wait = WaitSignal(Level("", on))
-            yield WaitSignal(Level(self._signal_name(wait), on))
+            yield WaitSignal(Level(self.signal_name(wait), on))
 
 
 def literals_of(program: Program, move: Move) -> list[float]:
@@ -343,9 +332,11 @@ def _among(wanted: Sequence[float] | FloatArray, literals: Sequence[float]) -> b
     return all(min(abs(one - other) for other in literals) < _NEAR for one in wanted)
 
 
-def a_zone(kind: type[Zone]) -> Zone:
+def a_zone(kind: type[Zone] | ZoneKind) -> Zone:
     """A zone of a kind: of one that is a share 40 %, of one with a radius 13 mm."""
-    return Radius(0.013) if kind is Radius else kind(0.4)  # type: ignore[call-arg]
+    if isinstance(kind, ZoneKind):
+        return kind.sized(13 * kind.unit if kind.unit == 1e-3 else 0.4 * kind.largest)
+    return Radius(0.013) if kind is Radius else kind(0.4)  # type: ignore[call-arg, arg-type]
 
 
 def _zone(move: Move) -> Any:
@@ -353,7 +344,8 @@ def _zone(move: Move) -> Any:
     zone = move.zone
     if isinstance(zone, Fine):
         return "Fine"
-    return type(zone).__name__, [getattr(zone, zone.__slots__[0])]
+    size = zone.size if isinstance(zone, VendorZone) else getattr(zone, zone.__slots__[0])
+    return zone_word(zone), [size]
 
 
 def _number(name: str) -> Callable[[Move], Any]:
@@ -374,8 +366,8 @@ def _places(event: Event) -> Iterator[Event]:
 def _beyond(spoken: Dialect, move: Move) -> Iterator[str]:
     """What a move says that the dialect has no words for."""
     words, kind = spoken.words(move), type(move).__name__
-    if not isinstance(move.zone, (Fine, *words.zones)):
-        yield f"the zone {type(move.zone).__name__} of {kind}"
+    if kind_of(move.zone) not in {Fine, *words.zones}:
+        yield f"the zone {zone_word(move.zone)} of {kind}"
     stated = set(stated_speeds(move))
     for name in sorted(stated - words.speeds):
         yield f"the speed {name} of {kind}"

@@ -67,6 +67,28 @@ def test_the_suite_of_the_page_is_the_suite(page: ModuleType) -> None:
     assert page.TestAcme.name == "acme"
 
 
+def test_the_golden_texts_of_the_page_are_what_its_plugin_reads(
+    page: ModuleType, tmp_path: Path
+) -> None:
+    golden = next(text for text in blocks("toml") if "[[texts]]" in text)
+    (tmp_path / "golden.toml").write_text(golden, "utf-8")
+
+    class Suite(page.TestAcme):  # type: ignore[name-defined, misc]
+        vendor = page.acme()
+
+    suite = Suite()
+    suite.golden = tmp_path / "golden.toml"
+    suite.test_golden_texts_mean_what_their_author_says()
+    suite.test_golden_moves_stand_where_their_author_says()
+    suite.test_robots_are_those_of_their_data_sheets()
+    suite.test_golden_texts_cover_the_language()
+    (tmp_path / "golden.toml").write_text(golden.replace("0.25 }", "0.2 }"), "utf-8")
+    suite = Suite()
+    suite.golden = tmp_path / "golden.toml"
+    with pytest.raises(AssertionError, match=r"speed\.tcp: 0\.2 stated, 0\.25 read"):
+        suite.test_golden_texts_mean_what_their_author_says()
+
+
 def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:
     acme = page.acme()
     robot = acme.robot("swift-6")

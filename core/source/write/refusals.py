@@ -10,7 +10,7 @@ from ...program.move import Move, MoveC
 from ...program.speed import Speed
 from ...program.target import PoseTarget
 from ...program.tool import FLANGE, WORLD
-from ...program.zone import Fine, Radius, VendorZone, Zone, zone_word
+from ...program.zone import Fine, Radius, Zone, kind_of, kind_word, zone_word
 
 _FREE = Speed()
 _PARTS = ("angle", "external_linear", "external_angular")
@@ -52,9 +52,8 @@ def check_said(move: Move, dialect: Dialect, name: str) -> None:
 def _check_zone(zone: Zone, words: MoveWords, dialect: Dialect, name: str) -> None:
     if isinstance(zone, Fine):
         return
-    kind = zone.kind if isinstance(zone, VendorZone) else type(zone)
-    if kind not in words.zones:
-        known = " or ".join(k.__name__ if isinstance(k, type) else k.word for k in words.zones)
+    if kind_of(zone) not in words.zones:
+        known = " or ".join(map(kind_word, words.zones))
         raise InputError(f"{name} has no zone by {zone_word(zone)} here: use {known or 'stops'}")
     if isinstance(zone, Radius) and not dialect.zone_parts:
         if zone.tcp == 0:

@@ -27,7 +27,7 @@ from flyby.problems.improve.zones.maximize import maximize_zones
 from flyby.problems.improve.zones.options import ZoneTask
 from flyby.tasks.files.texts import ProgramTexts
 from flyby.tasks.setup import Setup
-from flyby.testing.strategies import crowded_programs
+from flyby.testing.crowded import crowded_programs
 
 CASES = {
     "abb": (
