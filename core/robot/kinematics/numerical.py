@@ -14,11 +14,28 @@ STARTS = 96
 LEVENBERG_ITERATIONS = 60
 CLOSE = 1e-3
 """m and rad of pose error at which Newton's method takes over."""
+SETTLED = 1e-12
+"""The same at which Levenberg's method ends where Newton's does not: where axes are in line, the
+error is a square of what is left to go, and undamped steps turn both axes without end."""
+COARSE, FINE = (0.3, 1e-4), (1e-4, 1e-14)
+"""Damping to begin with, and the least, of an approach from afar and of the last stretch."""
 
 
 @njit(cache=True, error_model="numpy")
-def approach(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> float:
-    """Move q (n,) towards a pose by Levenberg's method; the error left (m, rad) is returned."""
+def approach(
+    chain: Chain,
+    q: FloatArray,
+    R: FloatArray,
+    p: FloatArray,
+    dampings: tuple[float, float],
+    close: float,
+) -> float:
+    """Move q (n,) towards a pose by Levenberg's method, until the error is below ``close``; the
+    error left (m, rad) is returned.
+
+    Args:
+        dampings: to begin with, and the least.
+    """
     size = q.size
     joints = np.arange(size)
     J = np.empty((6, size))
@@ -26,10 +43,10 @@ def approach(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> float
     error, step = np.empty(6), np.empty(size)
     jacobian(chain, q, here_R, here_p, J)
     left = pose_error(R, p, here_R, here_p, error)
-    damping = 0.3
+    damping, least = dampings
     trial = np.empty(size)
     for _ in range(LEVENBERG_ITERATIONS):
-        if left < CLOSE or damping > 1e3:
+        if left < close or damping > 1e3:
             break
         least_step(J, joints, error, damping, step)
         trial[:] = q + step
@@ -38,7 +55,7 @@ def approach(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> float
         if found < left:
             q[:] = trial
             left = found
-            damping = max(1e-4, 0.4 * damping)
+            damping = max(least, 0.3 * damping)
         else:
             damping *= 3.0
             jacobian(chain, q, here_R, here_p, J)
@@ -73,10 +90,12 @@ def solve_numerically(
     least = np.inf
     joints = np.arange(lower.size)
     for start in starts(lower, upper):
-        left = approach(chain, start, R, p)
+        left = approach(chain, start, R, p, COARSE, CLOSE)
         least = min(least, left)
         if left < 10 * CLOSE:
             q = np.empty_like(start)
             if track(chain, start, R, p, joints, q)[0]:
                 found.append(q)
+            elif approach(chain, start, R, p, FINE, SETTLED) < SETTLED:
+                found.append(start)
     return found, least

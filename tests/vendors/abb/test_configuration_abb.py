@@ -71,6 +71,17 @@ def test_solutions_of_one_pose_have_different_labels(name: str, data: st.DataObj
     assert len({found.cfx for found in decided}) == len(decided)
 
 
+@pytest.mark.parametrize("name", ["irb5400", "irb5400-22", "irb5500-23", "irb580-16"])
+@pytest.mark.parametrize(
+    "q", [(0, 0, 0, 0, 0, 1), (0, 0, 0, 0, 1e-7, 1), (0.3, 0.2, -0.1, 1, 0, 2)]
+)
+def test_a_hollow_wrist_is_found_where_it_is_straight(name: str, q: tuple[float, ...]) -> None:
+    robot = ABB.robot(name)
+    pose = robot.flange_pose(np.array(q, dtype=float))
+    for found in robot.inverse(pose):
+        np.testing.assert_allclose(robot.flange_pose(found.q).matrix(), pose.matrix(), atol=1e-9)
+
+
 @given(q=st.tuples(*[degrees] * 6))
 def test_a_label_matches_itself(q: tuple[float, ...]) -> None:
     found = label_of(IRB6640, *q)
