@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
+from pathlib import PurePath
 
 import numpy as np
 
@@ -233,7 +234,8 @@ class _StationPage:
             for saving, told in zip(made.savings, made.saving_rows(), strict=True):
                 index = names.index(saving.robot)
                 source, line = self.draft.sources.place(index, saving.action.span)
-                changed: list[PageCell] = [saving.seconds, *told[:4]]
+                place = _where(saving.action.span)
+                changed: list[PageCell] = [saving.seconds, *told[:2], place, told[3]]
                 saved.append(PageRow(changed, "", index, None, None, source, line))
             note = "What could go or come earlier; the station is as much quicker."
             yield PageTable("Interlocks", _SAVINGS, saved, note)
@@ -303,4 +305,4 @@ def _waits_for(spell: Spell) -> str:
 
 
 def _where(span: Span | None) -> str:
-    return "" if span is None else f"{span.file}:{span.line}"
+    return "" if span is None else f"{PurePath(span.file).name}:{span.line}"
