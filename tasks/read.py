@@ -306,7 +306,7 @@ def answers_of(options: SourceOptions) -> Answers:
 
     given = options.answers
     answers = load_answers(given) if isinstance(given, str | Path) else given or Answers()
-    return replace(answers, cycles=options.cycles, goes_on=True)
+    return replace(answers, cycles=options.cycles, goes_on=True, mends=True)
 
 
 _BESIDE_PROGRAMS = frozenset({".sub", ".txt", ".urp", ".urpx"})
@@ -346,7 +346,8 @@ def _error(
 ) -> FlybyError | None:
     """Why a file does not run by itself; None if it does."""
     try:
-        vendor.read_file(file, entry, robot, answers_of(options), options.others)
+        answers = replace(answers_of(options), mends=False)
+        vendor.read_file(file, entry, robot, answers, options.others)
     except FlybyError as error:
         return error
     return None

@@ -50,7 +50,7 @@ def read(language: str, *lines: str, text: str = "{}", goes_on: bool = True) -> 
         whole,
         SUFFIX[language],
         robot=find_robot(ROBOTS[language]),
-        answers=Answers(goes_on=goes_on),
+        answers=Answers(goes_on=goes_on, mends=goes_on),
     )
 
 

@@ -49,6 +49,7 @@ class Answers:
         file: where they come from, for messages.
         goes_on: whether a program goes on behind what nobody knows: a routine that is not at hand
             is stepped over, a move whose target is not known is `open`. Else both are refused.
+        mends: whether what is no statement of the language is stepped over. Else it is refused.
         cycles: passes of a loop without an end that moves the robot.
         signals: what signals are called on other robots; a reader does not ask for them.
     """
@@ -61,6 +62,7 @@ class Answers:
     durations: Mapping[str, float] = field(default_factory=dict)
     file: str = ""
     goes_on: bool = False
+    mends: bool = False
     cycles: int = 1
     signals: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)

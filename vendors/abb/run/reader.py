@@ -127,7 +127,7 @@ def _program(
     options: ReadOptions,
     external_axes: Sequence[str] | None,
 ) -> Program:
-    mended = options.answers.goes_on
+    mended = options.answers.mends
     damages = {name: Damage() for name in names} if mended else {}
     parsed = {name: parse(SourceText(files[name].text, name, damages.get(name))) for name in names}
     data = Globals(

@@ -57,7 +57,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
     if suffix_of(main) == ".dat":
         raise SourceError(COMPANIONS[".dat"], start)
     with collection_paused():
-        library = Library(files, main, options.answers.goes_on)
+        library = Library(files, main, options.answers.mends)
         name, given = entry_call(options.entry)
         if name == ALL and ALL not in library.main.routines:
             points = Interpreter(library, options).entry_points(library.main_unit.routines)

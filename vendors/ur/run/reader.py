@@ -144,7 +144,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
     ordered = [*(f for name, f in files.items() if name != main), files[main]]
     if arguments:
         ordered.insert(0, SourceFile("--entry", f"{name}({arguments})\n"))
-    texts = Texts(ordered, Damage() if options.answers.goes_on else None)
+    texts = Texts(ordered, Damage() if options.answers.mends else None)
     try:
         with collection_paused():
             return _read(texts, main, replace(options, entry=name), bool(arguments))
