@@ -49,7 +49,7 @@ class TranslateOptions(TaskOptions):
     )
     flat: bool = switch(
         "All moves one after the other, each with a speed and a zone of its own; without it loops "
-        "and routines are kept whose moves are the same every time."
+        "and routines are kept whose moves differ in evenly moved or handed over targets alone."
     )
 
 
