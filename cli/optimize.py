@@ -63,6 +63,15 @@ def optimize(
             "'flyby translate' writes it.",
         ),
     ] = None,
+    release: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--release",
+            metavar="ROBOT.OUTPUT",
+            help="Of a station: an output that only gives space free, and may be set earlier; may "
+            "be given several times.",
+        ),
+    ] = None,
     out: Out = None,
     in_place: InPlace = False,
     plot: CellPlot = None,
@@ -77,8 +86,10 @@ def optimize(
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     if is_station(program):
-        _station(program, source, options, places, json)
+        _station(program, source, options, release or (), places, json)
         return
+    if release:
+        raise OptionError("--release names outputs of a station's robots; this is one program")
     places.check()
     check_page(report, places.inputs, force)
     if plot is not None:
@@ -109,7 +120,12 @@ def optimize(
 
 
 def _station(
-    file: Path, source: SourceOptions, options: OptimizeOptions, places: FilePlaces, json: bool
+    file: Path,
+    source: SourceOptions,
+    options: OptimizeOptions,
+    release: Sequence[str],
+    places: FilePlaces,
+    json: bool,
 ) -> None:
     """The programs of all robots of a station."""
     from ..tasks.station.optimize import StationOptimizeOptions, station_optimize_with
@@ -119,7 +135,8 @@ def _station(
         *("starts", "generations"),
     )
     refuse_given([source, options], taken)
-    wanted = StationOptimizeOptions(**{name: getattr(options, name) for name in taken})
+    given = {name: getattr(options, name) for name in taken}
+    wanted = StationOptimizeOptions(release=release, **given)
     changed_station(
         file, lambda say: station_optimize_with(file, replace(wanted, report=say)), places, json
     )

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...core.door import spelt
+from ...core.errors import InputError, UnknownNameError
 from ..changes import kept_moves
 from ..files.texts import ProgramTexts
 from ..optimize import OptimizeOptions, optimize_beside
-from ..options.entries import ANGLE, COUNT, Extent, number, switch
+from ..options.entries import ANGLE, COUNT, Extent, number, switch, value
 from ..options.keywords import by_keywords
 from ..setup import setup_of_program, start_of
 from .changing import Share, StationChangeOptions, changed_station
 
 if TYPE_CHECKING:
+    from ...core.collision.proof.verdict import Certificate
+    from ...core.motion.emulator.run import Run
     from ...core.program.program import Program
+    from ...core.source.reading import Files
     from ...problems.improve.solution import Solution
     from ...problems.improve.solve_round_verify import Beside
     from ...problems.improve.station.feasibility import StationFeasibility
@@ -29,6 +34,12 @@ class StationOptimizeOptions(StationChangeOptions):
 
     zones_only: bool = switch("Change zones and speeds alone; every point stays.")
     predefined: bool = switch("Choose among the vendor's predefined zones.")
+    release: Sequence[str] = value(
+        (),
+        "Output that only gives space free, ROBOT.OUTPUT, and may be set earlier; may be given "
+        "several times.",
+        several=True,
+    )
     full_speed: bool = switch("Robots that would wait are not driven slower.")
     tilt: float = number(
         0.0,
@@ -49,7 +60,8 @@ def station_optimize_with(source: str | Path, options: StationOptimizeOptions) -
     """Make a station faster, and robots that would wait slower, and prove the station.
 
     Via points and zones of each robot are sought as `optimize` seeks them, beside the other
-    robots. Then robots that would wait drive slower, so that the wait is short.
+    robots. Then outputs that only give space free are set as early as is proven, before moves that
+    are driven earlier, and robots that would wait drive slower, so that the wait is short.
 
     Args:
         source: a station file.
@@ -77,17 +89,68 @@ def station_optimize_with(source: str | Path, options: StationOptimizeOptions) -
         )
         return optimize_beside(program, wanted, beside)
 
-    def slower(
+    def later(
         feasibility: StationFeasibility, shares: Mapping[str, Share], solutions: dict[str, Solution]
     ) -> None:
+        released = _released(feasibility, options.release)
         for name in feasibility.state.station.members:
-            options.say(f"looking for waits of {name} that slower moves shorten")
-            _slow(feasibility, shares[name], solutions, options.jitter)
+            if released:
+                options.say(f"looking for outputs of {name} that may come earlier")
+                _release(feasibility, name, solutions, released)
+        for name in feasibility.state.station.members:
+            if not options.full_speed:
+                options.say(f"looking for waits of {name} that slower moves shorten")
+                _slow(feasibility, shares[name], solutions, options.jitter)
 
-    return changed_station(source, options, faster, None if options.full_speed else slower)
+    return changed_station(source, options, faster, later)
 
 
 station_optimize = by_keywords(station_optimize_with, StationOptimizeOptions)
+
+
+def _released(feasibility: StationFeasibility, given: Sequence[str]) -> frozenset[str]:
+    """Keys of the outputs that may come earlier.
+
+    Raises:
+        InputError: one is no output that another robot waits for.
+    """
+    from ...core.program.signal import SetSignal
+    from ...core.station.station import signal_key
+
+    known = {
+        signal_key(f"{name}.{action.does.name}"): f"{name}.{action.does.name}"
+        for name, doings in feasibility.state.ordered.items()
+        for action in doings
+        if isinstance(action.does, SetSignal)
+    }
+    for text in map(str, given):
+        if signal_key(text) not in known:
+            error = UnknownNameError("output that others wait for", text, known.values())
+            raise InputError(f"{spelt('release')}: {error}")
+    return frozenset(map(signal_key, map(str, given)))
+
+
+def _release(
+    feasibility: StationFeasibility,
+    name: str,
+    solutions: dict[str, Solution],
+    outputs: frozenset[str],
+) -> None:
+    """Set a robot's outputs as early as is proven."""
+    from ...core.collision.proof.certificate import scenes_of
+    from ...core.source.patch.edits import reading_of
+    from ...problems.improve.station.releases import EarlierReleases
+
+    member = feasibility.state.station.members[name]
+
+    def reread(program: Program, files: Files) -> Program:
+        return replace(reading_of(program).again(files), setup=member.program.setup)
+
+    earlier = EarlierReleases(
+        feasibility, name, scenes_of(member.cell), start_of(member.program), reread, outputs
+    )
+    for run, certificate, files in earlier.run():
+        _put(feasibility, name, solutions, run, certificate, files)
 
 
 def _slow(
@@ -95,36 +158,45 @@ def _slow(
 ) -> None:
     """Put a slower program in the place of a robot's, where it would wait else."""
     from ...core.collision.proof.certificate import scenes_of
-    from ...problems.improve.solution import Solution, measure
     from ...problems.improve.station.slowing import Slowing
     from ...problems.improve.waypoints import WaypointTask
 
     member = feasibility.state.station.members[share.name]
-    program, given = member.program, feasibility.given.station.members[share.name]
-    setup = setup_of_program(program)
-    moves, speeds = kept_moves(program, share.keep)
-    texts = ProgramTexts(setup, program, own=True)
+    setup = setup_of_program(member.program)
+    moves, speeds = kept_moves(member.program, share.keep)
+    texts = ProgramTexts(setup, member.program, own=True)
     found = Slowing(
         feasibility,
         share.name,
         scenes_of(member.cell),
         setup.vendor.speaks,
         WaypointTask(keep=moves, keep_speeds=speeds),
-        start_of(program),
+        start_of(member.program),
         reserve,
     ).run(texts.read_back)
-    if found is None or not feasibility.take(share.name, found[0]):
-        return
-    run, certificate = found
-    known = solutions.get(share.name)
-    before = measure(given.controller, given.run) if known is None else known.before
-    solutions[share.name] = Solution(
+    if found is not None and feasibility.take(share.name, found[0]):
+        _put(feasibility, share.name, solutions, *found, texts.last)
+
+
+def _put(
+    feasibility: StationFeasibility,
+    name: str,
+    solutions: dict[str, Solution],
+    run: Run,
+    certificate: Certificate,
+    texts: Files,
+) -> None:
+    """A robot's solution with a program that was made of it."""
+    from ...problems.improve.solution import Solution, measure
+
+    given, known = feasibility.given.station.members[name], solutions.get(name)
+    solutions[name] = Solution(
         given.program,
         run.program,
-        before,
+        measure(given.controller, given.run) if known is None else known.before,
         measure(given.controller, run, certificate),
         certificate,
         () if known is None else known.notes,
         () if known is None else known.moved,
-        {**({} if known is None else known.texts), **texts.last},
+        {**({} if known is None else known.texts), **texts},
     )

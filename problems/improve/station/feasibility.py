@@ -131,6 +131,14 @@ class StationFeasibility:
 
         return said
 
+    def duration_with(self, name: str, run: Run) -> float:
+        """s that the station takes with another program of one robot, proven or not."""
+        station = self.state.station
+        members = dict(station.members)
+        members[name] = replace(members[name], program=run.program, run=run)
+        actions = {**self.state.actions, name: self._actions(station, name, run)}
+        return StationClock(replace(station, members=members), actions).run().duration
+
     def take(self, name: str, run: Run) -> bool:
         """Take a program over, if it may run beside the others.
 

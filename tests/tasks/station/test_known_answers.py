@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import flyby
+from flyby.core.errors import FlybyError
 
 from .stations import UNUSED, Write
 
@@ -208,3 +209,31 @@ def test_two_arms_hold_one_part(tmp_path: Path) -> None:
         trajectory = made.station.members[name].run.trajectory
         heights.append(np.interp(schedule.own(t), trajectory.t, trajectory.position[:, 2]))
     assert abs(heights[0] - heights[1]).max() < 0.01
+
+
+def test_an_output_comes_as_early_as_it_may(write: Write) -> None:
+    """The first drives on for a while before it lets the second in: the output moves up to where it
+    has turned away, and no farther."""
+    one = [OUT, IN, OUT, BACK, OUT, BACK, "SetDO done, 1", OUT]
+    file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
+    kept = flyby.station_optimize(file, zones_only=True, full_speed=True)
+    assert not kept.changed
+    with pytest.raises(FlybyError, match=r"release: .*one\.dnoe.*one\.done"):
+        flyby.station_optimize(file, zones_only=True, release=["one.dnoe"])
+    made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
+    (text,) = [f.text for f in made.solutions["one"].texts.values()]
+    moves = [line.strip() for line in text.split("\n") if "MoveAbsJ" in line or "SetDO" in line]
+    assert moves == [f"{line};" for line in (OUT, IN, OUT, "SetDO done, 1", BACK, OUT, BACK, OUT)]
+    assert made.after.duration < made.before.duration - 0.3 and made.proven
+    flyby.write(made, file.parent / "out")
+    again = flyby.station(file.parent / "out/station.toml")
+    assert again.duration == pytest.approx(made.after.duration, abs=1e-6)
+    (pair,) = again.clearances
+    assert pair.safe and not pair.any_time.proven
+
+
+def test_an_output_that_is_early_enough_stays(write: Write) -> None:
+    one = [OUT, IN, OUT, "SetDO done, 1", BACK]
+    file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
+    made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
+    assert not made.changed
