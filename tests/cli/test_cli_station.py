@@ -82,3 +82,9 @@ def test_a_station_is_checked(flyby: Flyby, station: Path) -> None:
     station.write_text(station.read_text().split("[links]")[0])
     made = flyby("check", station)
     assert made.exit_code == 1 and "left.mod" in made.stderr and "right.mod" in made.stderr
+
+
+def test_releases_are_a_stations(flyby: Flyby, station: Path) -> None:
+    program, cell = station.parent / "left.mod", station.parent / "left.toml"
+    made = flyby("optimize", program, "--cell", cell, "--release", "left.doLeft")
+    assert made.exit_code == 2 and "--release names outputs of a station" in made.stderr
