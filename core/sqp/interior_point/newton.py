@@ -21,7 +21,7 @@ from .system import BarrierSystem, SystemWeights
 
 _FIRST_SHIFT, _LEAST_SHIFT, _LARGEST_SHIFT = 1e-4, 1e-20, 1e40
 _FAST, _GROW, _SHRINK = 100.0, 8.0, 1.0 / 3.0
-_CREEP, _CREEPS = 0.3, 3
+_CREEP, _CREEPS = 0.1, 5
 """Largest change of a variable, in its size, below which a step of a shifted system may creep, and
 how many of them in a row do."""
 _DEPENDENT = 1e-8

@@ -28,6 +28,11 @@ class Pattern:
         self._dense = False
         self._open = True
 
+    @property
+    def known(self) -> Sparsity | None:
+        """The pattern; None before the first matrix."""
+        return self._known
+
     def reopen(self) -> None:
         """Let the next matrix have a pattern of its own."""
         self._open = True

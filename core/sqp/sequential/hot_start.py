@@ -6,6 +6,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..active_steps import ActiveSteps
+from ..algebra.dense import is_dense
 from ..options import Options
 from ..problem.evaluation import Point
 from ..problem.hessians import HessianSource
@@ -46,6 +47,9 @@ def hot_started(
         return
     if len(warm.multipliers) != problem.nlp.m or len(warm.bound_multipliers) != problem.nlp.n:
         return
+    known = workspace.hessian.known
+    if known is not None and is_dense(known):
+        return  # a step would cost as much as an iteration
     limits = _STEPS, _REACH, _SYSTEMS, _GAIN
     steps = ActiveSteps(problem, hessian, workspace.saddles, progress, options.tolerance, *limits)
 
