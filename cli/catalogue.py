@@ -13,7 +13,7 @@ from ..core.own_robots import keep_robot
 from ..core.registry import all_listed
 from ..core.robot_files import load_robot_file, names_file
 from ..tasks.catalogue import driver_of, registry, robot, vendor_of
-from ..tasks.new_vendor import new_vendor as make_vendor
+from ..tasks.files.new_vendor import new_vendor as make_vendor
 from .output.console import print_json, print_rich, print_table
 
 if TYPE_CHECKING:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from importlib.metadata import version
 from pathlib import Path
 
-from ..core.errors import InputError
-from ..core.hookspec import API
-from ..core.registry import installed
-from ..core.vendor import NAME
+from ...core.errors import InputError
+from ...core.hookspec import API
+from ...core.registry import installed
+from ...core.vendor import NAME
 
-SKELETON = Path(__file__).parents[1] / "testing" / "skeleton"
+SKELETON = Path(__file__).parents[2] / "testing" / "skeleton"
 _PLACES = {
     "plugin.py": "src/@module@/plugin.py",
     "language.py": "src/@module@/language.py",
