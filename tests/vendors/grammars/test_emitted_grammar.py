@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, Span
+from flyby.core.program.move import Move
 from flyby.core.program.section import Section
 from flyby.testing.checks.subject import Subject
 
@@ -23,7 +24,30 @@ PROGRAMS = settings(
 )
 
 
-@pytest.mark.parametrize("words", [AbbWords(), KukaWords(), UrWords()], ids=lambda w: w.name)
+class _Motion(Subject):
+    """Programs that use no signals: these are declared on the controller, not in the text."""
+
+    def acting(self, move: Move) -> st.SearchStrategy[Move]:
+        """No events."""
+        return st.just(move)
+
+    def kept(self) -> None:
+        """No statements but moves and waits."""
+
+
+class _Abb(_Motion, AbbWords):
+    pass
+
+
+class _Kuka(_Motion, KukaWords):
+    pass
+
+
+class _Ur(_Motion, UrWords):
+    pass
+
+
+@pytest.mark.parametrize("words", [_Abb(), _Kuka(), _Ur()], ids=lambda w: w.name)
 class TestEmitted:
     @PROGRAMS
     @given(data=st.data())
