@@ -29,6 +29,8 @@ from .zone_exits import Apart, first_exit, first_turn, tcp_apart, tool_apart
 
 _NOTHING = 1e-9
 """A reach below is no zone."""
+_UNSEEN = 1e-7
+"""m, or share of a line, below which a zone by speed is a stop: that of a crawling robot."""
 _DISTANCE, _TURN = (first_exit, tcp_apart), (first_turn, tool_apart)
 """What tells how far the TCP, or by how much the tool, is from a waypoint along a joint line."""
 _Reaches = tuple[tuple[Reach, Reach], ...]
@@ -280,11 +282,15 @@ class ZonePlanner:
         joint = (self._segments.ends.kind[i : i + 2] == JOINT_SEGMENT).any()
         if law is None or not joint:
             way = size if law is None else law(size, *self._rates(i, i, zone))
+            if way.value < _UNSEEN:
+                return Reach(0.0), Reach(0.0)
             told = law is None
             before = self._within(i, way, 0.0, told)
             return before[0], self._within(i, way * zone.ratio, 0.0)[1]
         (v, a), (_, onwards) = (self._rates(k, i, zone) for k in (i, i + 1))
         way = law(size, v, a)
+        if way.value < _UNSEEN:
+            return Reach(0.0), Reach(0.0)
         return self._along(i, way), self._along(i + 1, way * onwards / a * zone.ratio)
 
     def _along(self, segment: int, way: Reach) -> Reach:
