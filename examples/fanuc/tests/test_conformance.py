@@ -39,7 +39,7 @@ class TestFanuc(VendorConformance):
                 Speed, joint_fraction=PERCENT.map(lambda p: p / 100), acceleration_override=OVERRIDE
             )
         return st.builds(
-            Speed, tcp=st.integers(5, 2000).map(lambda v: v / 1000), acceleration_override=OVERRIDE
+            Speed, tcp=st.integers(50, 2000).map(lambda v: v / 1000), acceleration_override=OVERRIDE
         )
 
     def said_speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
