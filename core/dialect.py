@@ -71,7 +71,7 @@ class MoveWords:
         unsaid = sorted((self.needs | self.exclusive) - self.speeds)
         if unsaid:
             raise InputError(
-                f"MoveWords: {unsaid[0]!r} is needed or exclusive, and not among the speeds"
+                f"MoveWords.needs and exclusive: {unsaid[0]!r} is not among the speeds"
             )
 
 
