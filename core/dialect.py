@@ -14,7 +14,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from .errors import InputError
-from .program.move import ArcOrientation
+from .program.arc_orientation import ArcOrientation
 from .program.speed import Speed
 from .program.zone import Radius, Zone, ZoneKind
 

@@ -9,7 +9,8 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from ..core.arrays import FloatArray
-from ..core.program.move import ArcOrientation, MoveC, MoveJ, MoveL, Statement
+from ..core.program.arc_orientation import ArcOrientation
+from ..core.program.move import MoveC, MoveJ, MoveL, Statement
 from ..core.program.program import Program
 from ..core.program.speed import Speed
 from ..core.program.target import PoseTarget

@@ -11,7 +11,8 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from ..core.arrays import FloatArray
-from ..core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
+from ..core.program.arc_orientation import ArcOrientation
+from ..core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..core.program.program import Program
 from ..core.program.speed import Speed
 from ..core.program.target import Configuration, JointTarget, PoseTarget, Target

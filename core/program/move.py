@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from ..display import in_line
 from ..errors import InputError, Span
+from .arc_orientation import ArcOrientation
 from .event import Event
 from .origin import MoveOrigin
 from .speed import Speed, speed_shown
 from .target import PoseTarget, Target, target_shown
 from .tool import FLANGE, WORLD, Load, Tool, WorkObject
 from .zone import FINE, Zone, zone_shown
-
-
-class ArcOrientation(StrEnum):
-    """How the tool turns along an arc."""
-
-    FOLLOWS_ARC = "follows_arc"
-    """Turned at a constant rate relative to the arc's tangent (RAPID, KRL ``#PATH``)."""
-    FIXED_FRAME = "fixed_frame"
-    """Interpolated from start to end in the work object (URScript mode 0, KRL ``#BASE``)."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)

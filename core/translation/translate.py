@@ -15,8 +15,9 @@ from ..motion.geometry.segments import make_segments
 from ..motion.model.rules import Overlap
 from ..motion.path.path import Path, Route
 from ..notebook import PictureCurve, page, picture, table
+from ..program.arc_orientation import ArcOrientation
 from ..program.folding import Folding, usable, with_one_cycle
-from ..program.move import ArcOrientation, MoveC, MoveJ, MoveL, Statement
+from ..program.move import MoveC, MoveJ, MoveL, Statement
 from ..program.program import Program
 from ..program.section import moved
 from ..program.target import JointTarget

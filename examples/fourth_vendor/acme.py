@@ -38,7 +38,8 @@ from flyby.core.language import Sources
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.provenance import Provenance
 from flyby.core.motion.model.rules import Overlap
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Statement, Wait
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Statement, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget, Target

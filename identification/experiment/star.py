@@ -17,7 +17,8 @@ from functools import cached_property
 import numpy as np
 
 from ...core.arrays import FloatArray
-from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ...core.program.arc_orientation import ArcOrientation
+from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import WORLD, Tool

@@ -19,7 +19,8 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.files.reading import read_json
-from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ...core.program.arc_orientation import ArcOrientation
+from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget

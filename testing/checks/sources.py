@@ -11,7 +11,8 @@ import pytest
 
 from ...core.dialect import Mention, Wording
 from ...core.errors import FlybyError, Span
-from ...core.program.move import ArcOrientation, Move, MoveC
+from ...core.program.arc_orientation import ArcOrientation
+from ...core.program.move import Move, MoveC
 from ...core.program.origin import Origin, Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, PoseTarget, Target

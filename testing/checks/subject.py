@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from ...core.dialect import SignalWords
 from ...core.errors import FlybyError
 from ...core.language import Sources
-from ...core.program.move import ArcOrientation, Move, Opaque
+from ...core.program.arc_orientation import ArcOrientation
+from ...core.program.move import Move, Opaque
 from ...core.program.program import Program
 from ...core.program.signal import SetSignal, SignalAction
 from ...core.program.speed import Speed

@@ -14,8 +14,9 @@ from scipy.spatial.transform import Rotation
 
 from ...core.arrays import FloatArray
 from ...core.dialect import Dialect, Orientation
+from ...core.program.arc_orientation import ArcOrientation
 from ...core.program.event import Event
-from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Statement
+from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement
 from ...core.program.origin import Ownership
 from ...core.program.program import Program
 from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal

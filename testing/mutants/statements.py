@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from ...core.language import Sources, Writer
+from ...core.program.arc_orientation import ArcOrientation
 from ...core.program.event import EventAnchor
-from ...core.program.move import ArcOrientation, Move, MoveC, MoveJ, Opaque, Wait
+from ...core.program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ...core.program.origin import Ownership
 from ...core.program.program import Program
 from ...core.program.target import PoseTarget

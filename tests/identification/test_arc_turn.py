@@ -13,7 +13,8 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.motion_file import load_motion_model
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import ArcTurn
-from flyby.core.program.move import ArcOrientation, MoveC, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget

@@ -10,7 +10,8 @@ import pytest
 
 from flyby.core.errors import InputError
 from flyby.core.files.reading import read_json
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.logs import load_run, read_samples, records

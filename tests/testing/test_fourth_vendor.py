@@ -14,7 +14,8 @@ import pytest
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, SourceError
-from flyby.core.program.move import ArcOrientation, Move, MoveJ, Opaque
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveJ, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, Target

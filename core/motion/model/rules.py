@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from ...program.move import ArcOrientation
+from ...program.arc_orientation import ArcOrientation
 
 
 class Overlap(StrEnum):

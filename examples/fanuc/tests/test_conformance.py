@@ -8,7 +8,8 @@ from flyby_fanuc.dialect import CNT, CR
 from flyby_fanuc.plugin import fanuc
 from hypothesis import strategies as st
 
-from flyby.core.program.move import ArcOrientation, Move, MoveJ
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveJ
 from flyby.core.program.speed import Speed
 from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, VendorZone, Zone

@@ -10,7 +10,8 @@ from flyby_yaskawa.plugin import vendor
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.speed import Speed
 from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, VendorZone, Zone

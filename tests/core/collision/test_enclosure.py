@@ -17,7 +17,8 @@ from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.motion.model.blend import PARABOLA, TANGENT_ARC, Blend
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.path.path import Path
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget

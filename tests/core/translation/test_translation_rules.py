@@ -11,8 +11,9 @@ from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.segments import make_segments
 from flyby.core.motion.model.blend import TANGENT_ARC, Blend
+from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import Event
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, Opaque, Wait
+from flyby.core.program.move import Move, MoveC, MoveJ, Opaque, Wait
 from flyby.core.program.origin import MoveOrigin, Origin, Ownership
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed

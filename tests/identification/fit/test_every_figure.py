@@ -20,7 +20,8 @@ from flyby.core.motion.model.kinds import Choice, RealNumber, Row, TruthValue
 from flyby.core.motion.model.motion_file import figures_text, load_motion_model
 from flyby.core.motion.model.motion_model import FIGURES, MotionModel, first_change
 from flyby.core.motion.model.torque import Borne
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from flyby.core.cell.floor import bare_cell
 from flyby.core.errors import InputError, MotionError
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.program.move import ArcOrientation
+from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.zone import FINE

@@ -8,7 +8,8 @@ from dataclasses import replace
 import pytest
 
 from flyby.core.errors import SourceError
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Radius

@@ -13,8 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, SourceError
+from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import EventAnchor
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL, Opaque, Wait
+from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone

@@ -11,8 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, MotionError
+from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import Event, EventAnchor
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Wait
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget

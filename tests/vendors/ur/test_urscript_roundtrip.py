@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.motion.emulator.controller import Controller
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Wait
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget

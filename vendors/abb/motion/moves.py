@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
+from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.event import Event
-from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.move import Move, MoveC, MoveJ, MoveL
 from ....core.program.question import QuestionKind
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ....core.program.move import ArcOrientation
+from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.tool import Load
 from ....core.spatial.pose import Pose
 

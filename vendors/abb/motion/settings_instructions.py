@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from ....core.errors import SourceError
-from ....core.program.move import ArcOrientation
+from ....core.program.arc_orientation import ArcOrientation
 from ....core.source.execution.transcript import Transcript
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Expression, Invoke

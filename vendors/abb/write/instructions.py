@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ....core.errors import InputError
-from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.arc_orientation import ArcOrientation
+from ....core.program.move import Move, MoveC, MoveJ, MoveL
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD
 from ..values.records import load_record

@@ -12,7 +12,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from ....core.errors import InputError, LeftOpenError, SourceError, Span
-from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque
+from ....core.program.arc_orientation import ArcOrientation
+from ....core.program.move import Move, MoveC, MoveJ, MoveL, Opaque
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject

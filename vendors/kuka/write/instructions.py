@@ -10,8 +10,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ....core.errors import InputError, MotionError
+from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.event import Event, EventAnchor
-from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.move import Move, MoveC, MoveJ, MoveL
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Load

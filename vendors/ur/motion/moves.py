@@ -12,7 +12,8 @@ from typing import Protocol
 
 from ....core.door import spelt
 from ....core.errors import InputError, LeftOpenError, SourceError, Span
-from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.arc_orientation import ArcOrientation
+from ....core.program.move import Move, MoveC, MoveJ, MoveL
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Tool

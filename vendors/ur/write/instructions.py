@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from ....core.errors import InputError
-from ....core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from ....core.program.arc_orientation import ArcOrientation
+from ....core.program.move import Move, MoveC, MoveJ, MoveL
 from ....core.program.places import Destination, Vector, rounded
 from ....core.program.program import Program
 from ....core.program.target import JointTarget, PoseTarget

@@ -15,7 +15,7 @@ from flyby.core.dialect import (
     SignalWords,
     Wording,
 )
-from flyby.core.program.move import ArcOrientation
+from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.text.conditions import ConditionWords, NoConditionError

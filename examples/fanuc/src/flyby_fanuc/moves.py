@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from flyby.core.errors import InputError, SourceError
+from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import Event
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget, Target
 from flyby.core.program.tool import FLANGE, WORLD, Tool, WorkObject

@@ -14,7 +14,8 @@ import numpy as np
 from flyby.core.dialect import Dialect, MoveWords, Orientation
 from flyby.core.errors import InputError, SourceError
 from flyby.core.language import Sources
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL, Opaque, Wait
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget, Target

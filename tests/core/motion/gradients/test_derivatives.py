@@ -18,7 +18,8 @@ from flyby.core.motion.model.blend import Blend
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import LineTurn, Pace
 from flyby.core.motion.model.torque import Borne, Torque
-from flyby.core.program.move import ArcOrientation, Move, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget

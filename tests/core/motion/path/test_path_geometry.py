@@ -15,7 +15,8 @@ from flyby.core.motion.geometry.corners import POSITION, STOP, TURNING
 from flyby.core.motion.model.blend import TANGENT_ARC, Blend
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import OrientationZone, Overlap
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.tool import Tool
