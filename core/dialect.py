@@ -102,6 +102,8 @@ class OutputWords:
         longest_lead: s that an event's time may be at most.
         from_start: whether distances may count from a move's start.
         along_joint: whether places on the way of joint moves may have distances.
+        both: whether a place may have a distance and a time.
+        most: events that one move may have.
     """
 
     switch: Callable[[str, bool], str]
@@ -109,6 +111,8 @@ class OutputWords:
     longest_lead: float
     from_start: bool = True
     along_joint: bool = True
+    both: bool = True
+    most: float = math.inf
 
     def takes(self, event: Event, move: Move) -> bool:
         """Whether an event has a place that there are words for."""
@@ -119,6 +123,8 @@ class OutputWords:
             return False
         if event.distance == 0:
             return True
+        if event.time != 0 and not self.both:
+            return False
         here = self.from_start or event.anchor is EventAnchor.END
         return here and (self.along_joint or not isinstance(move, MoveJ))
 
@@ -322,7 +328,7 @@ class Dialect:
         external_axes: whether targets have external axes.
         tools: whether programs say what the TCP is; without, targets are the flange's.
         loads: whether programs say what tools and parts weigh.
-        arc_orientations: how the tool may turn along arcs.
+        arc_orientations: how the tool may turn along arcs; empty if there are no arcs.
         orientation: the form in which it says rotations.
         in_si: whether lengths are said in m and angles in rad, not in mm and degrees.
         length_decimals, angle_decimals: decimals that controllers keep of them; None for as many

@@ -9,6 +9,7 @@ from dataclasses import replace
 from hypothesis import strategies as st
 
 from ..core.dialect import Dialect, MoveWords, OutputWords
+from ..core.program.arc_orientation import ArcOrientation
 from ..core.program.event import Event, EventAnchor
 from ..core.program.move import Move, MoveC, MoveJ, MoveL
 from ..core.program.speed import Speed
@@ -17,7 +18,7 @@ from .strategies import radii
 
 DRIVEN_ZONES = (Radius, ContourFraction)
 """Kinds that the checks of driven paths know the reach of."""
-DRIVEN_SPEEDS = ("reorientation",)
+DRIVEN_SPEEDS = ("tcp", "reorientation", "acceleration_override")
 """Numbers that programs are driven with beside those that must be stated."""
 _INSTEAD = "duration"
 """A time takes the place of speeds in some languages, and stands beside them in others."""
@@ -28,6 +29,18 @@ _PERCENT = st.integers(1, 100).map(lambda percent: percent / 100)
 def words_of(spoken: Dialect, kind: type[Move]) -> MoveWords:
     """What a dialect says of a kind of move."""
     return {MoveJ: spoken.joint, MoveL: spoken.line, MoveC: spoken.arc}[kind]
+
+
+def kinds_in(spoken: Dialect) -> tuple[type[Move], ...]:
+    """The kinds of move that a dialect has words for."""
+    return (MoveJ, MoveL, MoveC) if spoken.arc_orientations else (MoveJ, MoveL)
+
+
+def arcs_in(spoken: Dialect) -> st.SearchStrategy[ArcOrientation]:
+    """How the tool turns along arcs; one that follows an arc rigidly would have to end turned."""
+    if spoken.rigid_arcs or not spoken.arc_orientations:
+        return st.just(ArcOrientation.FIXED_FRAME)
+    return st.sampled_from(sorted(spoken.arc_orientations))
 
 
 def zones_in(spoken: Dialect, kinds: tuple[type[Zone] | ZoneKind, ...]) -> st.SearchStrategy[Zone]:
@@ -53,6 +66,8 @@ def _others(kind: type[Zone] | ZoneKind) -> st.SearchStrategy[Zone]:
 
 def _of_own_kind(kind: ZoneKind) -> st.SearchStrategy[Zone]:
     """Sizes as they are written: distances up to 5 cm, shares up to the largest."""
+    if kind.sizes:
+        return st.sampled_from(kind.sizes).map(kind.sized)
     largest = min(kind.largest, 0.05) if kind.reach is None else kind.largest
     step = kind.step or kind.unit
     most = math.floor(largest / step + 1e-9)
@@ -67,7 +82,8 @@ def speeds_in(spoken: Dialect, words: MoveWords, driven: bool = False) -> st.Sea
         words: of the kind of move.
         driven: whether programs are driven with them: numbers are moderate, and few.
     """
-    more = words.speeds & {*DRIVEN_SPEEDS} if driven else words.speeds - {_INSTEAD}
+    instead = {_INSTEAD} - words.exclusive
+    more = words.speeds & {*DRIVEN_SPEEDS} if driven else words.speeds - instead
     chosen = words.needs | more
     alone = sorted(chosen & words.exclusive) or [""]
     return st.one_of(
@@ -89,6 +105,9 @@ def _numbers(
     spoken: Dialect, name: str, driven: bool, optional: bool
 ) -> st.SearchStrategy[float | None]:
     most = spoken.most.get(name, _LARGEST)
+    if name == "acceleration_override":
+        share = round(100 * min(most, 2.0 if driven else most))
+        return st.integers(20, share).map(lambda percent: percent / 100)
     if "fraction" in name:
         least = 1 if name == "joint_fraction" else round(100 * spoken.least_acceleration_share)
         return st.integers(least, 100).map(lambda percent: percent / 100)
@@ -126,5 +145,6 @@ def events_in(outputs: OutputWords | None, name: str) -> st.SearchStrategy[tuple
 
 def with_events(move: Move, events: tuple[Event, ...], outputs: OutputWords | None) -> Move:
     """The move with those of the events that its language has a place for."""
-    taken = () if outputs is None else tuple(e for e in events if outputs.takes(e, move))
-    return replace(move, events=taken)
+    taken = [] if outputs is None else [e for e in events if outputs.takes(e, move)]
+    most = 0 if outputs is None else min(outputs.most, len(taken))
+    return replace(move, events=tuple(taken[: int(most)]))

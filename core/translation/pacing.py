@@ -253,6 +253,9 @@ class Pacer:
             stated["joint_acceleration"] = rounded(share * limit)
         self._bound(i, stated, self._dialect.most)
         pace = self._dialect.pace
+        if "duration" in stated and {"duration", pace} <= words.exclusive:
+            others = words.exclusive - {"duration"}
+            return Speed(**{n: v for n, v in stated.items() if n not in others})
         if self._same_pace and getattr(speed, pace) is not None:
             return Speed(**stated)
         stated[pace] = self._first_pace(k, leading)

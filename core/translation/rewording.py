@@ -139,7 +139,7 @@ class Rewording:
             said = None if action is None else self._on_the_way(action, event.span)
             if said is None and action is not None and _at_target(event):
                 behind += self._behind(action, event.span)
-            elif said is None or not self._takes(event, move):
+            elif said is None or not self._takes(event, move, len(events)):
                 found += self._event(event)
             else:
                 events.append(replace(event, text=said.text))
@@ -169,11 +169,11 @@ class Rewording:
             return Event(dialect.outputs.switch(action.name, action.value), span=span)
         return Event(dialect.outputs.level(action.name, action.value), span=span)
 
-    def _takes(self, event: Event, move: Move) -> bool:
-        """Whether the new language has words for an event's place."""
+    def _takes(self, event: Event, move: Move, others: int) -> bool:
+        """Whether the new language has words for an event's place beside others of the move."""
         dialect = self.target.vendor.speaks
         assert dialect is not None and dialect.outputs is not None
-        return dialect.outputs.takes(event, move)
+        return others < dialect.outputs.most and dialect.outputs.takes(event, move)
 
     def _event(self, event: Event) -> list[Opaque]:
         self.losses.statement(event.span, f"an event on the way becomes a comment: {event.text}")

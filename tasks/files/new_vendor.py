@@ -17,6 +17,7 @@ _PLACES = {
     "arm-1.toml": "src/@module@/data/robots/arm-1.toml",
     "motion.toml": "src/@module@/data/motion.toml",
     "test_conformance.py": "tests/test_conformance.py",
+    "golden.toml": "tests/golden.toml",
 }
 """Where the files of the skeleton go; the others stand beside the sources."""
 

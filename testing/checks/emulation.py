@@ -25,7 +25,7 @@ from ...core.motion.gradients.derivatives import Derivatives
 from ...core.motion.model.motion_model import MotionModel
 from ...core.motion.model.rules import LineTurn
 from ...core.motion.path.tcp_walk import JOINED
-from ...core.program.move import Move, MoveC, MoveJ, MoveL, Wait
+from ...core.program.move import Move, MoveJ, Wait
 from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
@@ -132,7 +132,9 @@ class EmulationChecks(Subject):
         if singular:
             program = data.draw(lines_near_singularities(robot))
         else:
-            program = data.draw(programs(robot, self.vendor.label, self._parts(self.zones), MOVES))
+            parts = self._parts(self.zones)
+            drawn = programs(robot, self.vendor.label, parts, MOVES, self.kinds)
+            program = data.draw(drawn)
         try:
             run = controller.run(program, period=PERIOD)
         except MotionError:
@@ -262,7 +264,8 @@ class EmulationChecks(Subject):
         for k, move in enumerate(seen.moves):
             rows = seen.segment == k
             dq, ddq = np.abs(seen.dq[rows]), np.abs(seen.ddq[rows])
-            shares = [dq / robot.limits.velocity, ddq / robot.limits.acceleration]
+            most_ddq = move.speed.acceleration_override * robot.limits.acceleration
+            shares = [dq / robot.limits.velocity, ddq / most_ddq]
             for part, limit, room in (
                 (slice(3), move.speed.tcp, 1.0),
                 (slice(3, 6), move.speed.reorientation, turning),
@@ -281,11 +284,12 @@ class EmulationChecks(Subject):
         self,
         data: st.DataObject,
         zone: OfKind[Zone],
-        kinds: Sequence[type[Move]] = (MoveJ, MoveL, MoveC),
+        kinds: Sequence[type[Move]] = (),
     ) -> tuple[Robot, Run]:
         """A robot, and what came of a program that it can drive."""
         robot = self._robot(data)
         parts = self._parts(zone)
+        kinds = kinds or self.kinds
         program = data.draw(programs(robot, self.vendor.label, parts, MOVES, kinds))
         try:
             return robot, self.controller(robot).run(program, period=PERIOD)

@@ -16,7 +16,7 @@ from ...core.program.move import Move, MoveC
 from ...core.program.origin import Origin, Ownership
 from ...core.program.program import Program
 from ...core.program.target import JointTarget, PoseTarget, Target
-from ...core.program.zone import Fine, Radius
+from ...core.program.zone import Fine, Radius, VendorZone
 from ...core.source.not_executed.search import not_executed
 from ...core.source.patch.edits import alike, difference, reading_of
 from ...core.source.reading import Files, Reading
@@ -265,6 +265,9 @@ def _other(part: str, old: Any, move: Move) -> Any:
         return None
     if isinstance(old, Radius):
         return old.resized(0.5 * old.tcp)
+    if isinstance(old, VendorZone):
+        size = old.kind.rounded(0.5 * old.size)
+        return replace(old, size=size) if size > 0.0 else None
     return replace(old, **{fields(old)[0].name: 0.5 * getattr(old, fields(old)[0].name)})
 
 

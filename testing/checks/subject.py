@@ -16,13 +16,13 @@ from ...core.dialect import SignalWords
 from ...core.errors import FlybyError
 from ...core.language import Sources
 from ...core.program.arc_orientation import ArcOrientation
-from ...core.program.move import Move, Opaque
+from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque
 from ...core.program.program import Program
 from ...core.program.signal import SetSignal, SignalAction
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget, Target
-from ...core.program.tool import WORLD, Load, Tool, WorkObject
-from ...core.program.zone import Zone
+from ...core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
+from ...core.program.zone import Zone, ZoneKind
 from ...core.registry import find_vendor
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
@@ -31,7 +31,16 @@ from ...core.source.write.approach import with_approach
 from ...core.spatial.pose import IDENTITY
 from ...core.vendor import Vendor
 from ..golden import Golden, GoldenRobot, GoldenText
-from ..said import DRIVEN_ZONES, events_in, speeds_in, with_events, words_of, zones_in
+from ..said import (
+    DRIVEN_ZONES,
+    arcs_in,
+    events_in,
+    kinds_in,
+    speeds_in,
+    with_events,
+    words_of,
+    zones_in,
+)
 from ..strategies import (
     OfKind,
     Parts,
@@ -130,7 +139,8 @@ class Subject:
         if spoken is None:
             return zones()
         kinds = words_of(spoken, kind).zones
-        return zones_in(spoken, tuple(one for one in kinds if one in DRIVEN_ZONES))
+        driven = (one for one in kinds if isinstance(one, ZoneKind) or one in DRIVEN_ZONES)
+        return zones_in(spoken, tuple(driven))
 
     def speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
         """Speeds, likewise."""
@@ -159,7 +169,12 @@ class Subject:
 
     def tools(self) -> st.SearchStrategy[Tool]:
         """Tools that the language can say."""
-        return tools()
+        spoken = self.vendor.speaks
+        if spoken is None:
+            return tools()
+        if not spoken.tools:
+            return st.just(FLANGE)
+        return tools().map(lambda one: one if spoken.loads else replace(one, load=None))
 
     def work_objects(self) -> st.SearchStrategy[WorkObject]:
         """Work objects that the language can say."""
@@ -172,13 +187,20 @@ class Subject:
 
     def loads(self) -> st.SearchStrategy[Load | None]:
         """Loads that the language can say."""
-        return st.none() | loads()
+        spoken = self.vendor.speaks
+        return st.none() if spoken is not None and not spoken.loads else st.none() | loads()
 
     def arcs(self) -> st.SearchStrategy[ArcOrientation]:
-        """How the tool turns along arcs; one that follows an arc rigidly would have to end
-        turned."""
-        rigid = self.vendor.speaks is not None and self.vendor.speaks.rigid_arcs
-        return st.just(ArcOrientation.FIXED_FRAME) if rigid else st.sampled_from(ArcOrientation)
+        """How the tool turns along arcs."""
+        spoken = self.vendor.speaks
+        return st.sampled_from(ArcOrientation) if spoken is None else arcs_in(spoken)
+
+    @property
+    def kinds(self) -> tuple[type[Move], ...]:
+        """The kinds of move that the language can say."""
+        spoken = self.vendor.speaks
+        kinds = (MoveJ, MoveL, MoveC) if spoken is None else kinds_in(spoken)
+        return tuple(kind for kind in kinds if kind.__name__ not in self.golden_none)
 
     def labelled(self, kind: type[Move]) -> bool:
         """Whether the language states the configurations of a kind of move's targets."""
@@ -228,7 +250,7 @@ class Subject:
     @cache  # noqa: B019 - a suite is as short-lived as its test
     def programs(self, robot: Robot) -> st.SearchStrategy[Program]:
         """Programs that the language can say."""
-        return programs(robot, self.vendor.label, self.parts())
+        return programs(robot, self.vendor.label, self.parts(), kinds=self.kinds)
 
     def sample(self) -> tuple[Robot, Sources]:
         """A robot and the sources of a short program, always the same."""

@@ -13,7 +13,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from ...core.arrays import FloatArray
-from ...core.dialect import Dialect, Orientation
+from ...core.dialect import Dialect, MoveWords, Orientation
 from ...core.program.arc_orientation import ArcOrientation
 from ...core.program.event import Event
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement
@@ -45,6 +45,7 @@ VALUES: Mapping[str, Any] = {
     "joint_acceleration": 1.1,
     "joint_acceleration_fraction": 0.55,
     "jerk_fraction": 0.65,
+    "acceleration_override": 0.85,
     "duration": 2.5,
 }
 """Numbers of `Speed`, none of them a usual default."""
@@ -164,7 +165,7 @@ class WordsChecks(Subject):
     def test_speeds_that_are_not_needed_may_be_left_out(self) -> None:
         """What must be stated, since the language's own default would be taken, is needed."""
         self.need("reader", "writer")
-        for kind in (MoveJ, MoveL, MoveC):
+        for kind in self.kinds:
             words = words_of(self.dialect, kind)
             for name in sorted({"tcp", self.dialect.pace} & words.speeds - words.needs):
                 program = self._around(self._plain(kind))
@@ -239,20 +240,21 @@ class WordsChecks(Subject):
             return MoveL(PoseTarget(end, None, external), speed, FINE)
         through = PoseTarget(via, None, external)
         # A tool that follows an arc rigidly would have to end turned.
-        rigid = self.dialect.rigid_arcs
-        turning = ArcOrientation.FIXED_FRAME if rigid else ArcOrientation.FOLLOWS_ARC
+        spoken, turning = self.dialect, ArcOrientation.FOLLOWS_ARC
+        if spoken.rigid_arcs or turning not in spoken.arc_orientations:
+            turning = ArcOrientation.FIXED_FRAME
         target = PoseTarget(end, None, external)
         return MoveC(target, speed, FINE, via=through, orientation=turning)
 
     def _said_by_moves(self, spoken: Dialect) -> Iterator[_Word]:
-        for kind in (MoveJ, MoveL, MoveC):
+        for kind in self.kinds:
             plain, words = self._plain(kind), words_of(self.dialect, kind)
             called = f"of {kind.__name__}"
             for zone in (FINE, *(a_zone(one) for one in words.zones)):
                 move = replace(plain, zone=zone)
                 yield _Word(f"zone {zone_word(zone)} {called}", move, _zone)
             for name in sorted(words.speeds):
-                speed = replace(plain.speed, **{name: VALUES[name]})
+                speed = replace(plain.speed, **_alone(words, name), **{name: VALUES[name]})
                 move = replace(plain, speed=speed)
                 yield _Word(f"speed {name} {called}", move, _number(name))
         line = self._plain(MoveL)
@@ -267,7 +269,7 @@ class WordsChecks(Subject):
             yield _Word("a work object", move, lambda move: move.work_object.pose)
         if spoken.user_frames:
             yield _Word("a user frame", move, lambda move: move.work_object.user)
-        if "tool" not in self.golden_none:
+        if spoken.tools and "tool" not in self.golden_none:
             move = replace(line, tool=_TOOL)
             yield _Word("a tool", move, lambda move: move.tool.tcp)
         if spoken.stationary_tools:
@@ -336,8 +338,15 @@ def _among(wanted: Sequence[float] | FloatArray, literals: Sequence[float]) -> b
 def a_zone(kind: type[Zone] | ZoneKind) -> Zone:
     """A zone of a kind: of one that is a share 40 %, of one with a radius 13 mm."""
     if isinstance(kind, ZoneKind):
-        return kind.sized(13 * kind.unit if kind.unit == 1e-3 else 0.4 * kind.largest)
+        size = 0.013 if kind.reach is None else 0.4 * kind.largest
+        return kind.sized(kind.rounded(size))
     return Radius(0.013) if kind is Radius else kind(0.4)  # type: ignore[call-arg, arg-type]
+
+
+def _alone(words: MoveWords, name: str) -> dict[str, Any]:
+    """What is left out where a number stands that is stated alone."""
+    others = words.exclusive - {name} if name in words.exclusive else frozenset[str]()
+    return {one: getattr(Speed(), one) for one in others}
 
 
 def _zone(move: Move) -> Any:

@@ -73,6 +73,7 @@ def _without_acceleration(move: Move) -> Move:
         tcp_acceleration=None,
         joint_acceleration=None,
         joint_acceleration_fraction=1.0,
+        acceleration_override=1.0,
         name=None,
     )
     return replace(move, speed=speed)

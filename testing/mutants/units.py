@@ -11,7 +11,7 @@ from ...core.program.move import Move, MoveC, Wait
 from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget, Target
-from ...core.program.zone import Fine, Radius, Zone
+from ...core.program.zone import Fine, Radius, VendorZone, Zone
 from ...core.spatial.pose import Pose
 from ..checks.subject import Subject
 from .mutant import Mutant, has
@@ -31,6 +31,8 @@ def _zones(factor: float) -> Fault:
             return zone
         if isinstance(zone, Radius):
             return replace(zone, **{n: factor * getattr(zone, n) for n in _LENGTHS}, name=None)
+        if isinstance(zone, VendorZone):
+            return replace(zone, size=min(zone.kind.largest, factor * zone.size))
         name = fields(zone)[0].name
         most = math.inf if name == "angle" else 1.0
         return replace(zone, **{name: min(most, factor * getattr(zone, name))})

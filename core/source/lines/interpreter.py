@@ -6,6 +6,7 @@ depends on one, `core.source.execution.flow` decides, and where a move does, it 
 
 from __future__ import annotations
 
+import math
 from contextlib import suppress
 from dataclasses import replace
 from typing import NoReturn
@@ -383,6 +384,8 @@ class _Interpreter:
         found = [None if one is None else self._operand(one) for one in operands]
         numbers = [Numbers() if one is None else one[0] for one in found]
         self._computed.clear()
+        if not all(math.isfinite(number) for one in numbers for number in one):
+            raise SourceError("a number is larger than controllers hold", statement.span)
         try:
             move = statement.build(numbers[0], numbers[1], numbers[2], numbers[3], self)
         except (InputError, ValueError) as error:

@@ -29,7 +29,7 @@ def check_said(move: Move, dialect: Dialect, name: str) -> None:
     words = dialect.words(move)
     _check_zone(move.zone, words, dialect, name)
     _check_speed(move.speed, words, name)
-    if move.tool != FLANGE and not dialect.tools:
+    if move.tool.tcp != FLANGE.tcp and not dialect.tools:
         raise InputError(f"{name} has no tools: give targets of the flange")
     if move.work_object != WORLD and not dialect.work_objects:
         raise InputError(f"{name} has no work objects: give targets in the robot's base")
@@ -42,6 +42,8 @@ def check_said(move: Move, dialect: Dialect, name: str) -> None:
         raise InputError(f"{name} states no loads in programs: take Tool.load away")
     if move.target.external and not dialect.external_axes:
         raise InputError(f"{name} has no external axes")
+    if isinstance(move, MoveC) and not dialect.arc_orientations:
+        raise InputError(f"{name} has no arcs: use lines")
     if isinstance(move, MoveC) and move.orientation not in dialect.arc_orientations:
         only = " or ".join(sorted(f"ArcOrientation.{one.name}" for one in dialect.arc_orientations))
         raise InputError(f"along {name}'s arcs the tool turns otherwise: use {only}")

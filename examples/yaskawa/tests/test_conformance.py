@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from flyby_yaskawa.language import LEVELS, PL
@@ -10,54 +11,27 @@ from flyby_yaskawa.plugin import vendor
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
-from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL
 from flyby.core.program.speed import Speed
-from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, VendorZone, Zone
+from flyby.core.program.zone import VendorZone
 from flyby.core.source.execution.answers import Answers
 from flyby.testing.conformance import VendorConformance
-
-PERCENT = st.integers(1, 100).map(lambda percent: percent / 100)
-OVERRIDE = st.sampled_from([1.0, 0.5, 0.8])
 
 
 class TestYaskawa(VendorConformance):
     name = "yaskawa"
     vendor = vendor()  # type: ignore[assignment]
-
-    def zones(self, kind: type[Move]) -> st.SearchStrategy[Zone]:
-        return st.just(FINE) | st.sampled_from(LEVELS).map(PL.sized)
-
-    def speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
-        if kind is MoveJ:
-            return st.builds(Speed, joint_fraction=PERCENT, acceleration_override=OVERRIDE)
-        tcp = st.integers(5, 1500).map(lambda v: v / 1000)
-        return st.builds(Speed, tcp=tcp, acceleration_override=OVERRIDE)
-
-    def said_speeds(self, kind: type[Move]) -> st.SearchStrategy[Speed]:
-        if kind is MoveJ:
-            return self.speeds(kind)
-        return self.speeds(kind) | st.builds(Speed, reorientation=st.floats(0.1, 3.0))
+    golden = Path(__file__).parent / "golden.toml"
 
     def other_speeds(self, move: Move) -> st.SearchStrategy[Speed]:
-        own = move.speed.acceleration_override
-        return self.speeds(type(move)).map(lambda s: replace(s, acceleration_override=own))
+        """A number is changed where it stands: none is put in, none taken out."""
+        own = move.speed
+        drawn = self.said_speeds(type(move)).filter(lambda speed: _stated(speed) == _stated(own))
+        return drawn.map(lambda s: replace(s, acceleration_override=own.acceleration_override))
 
-    def tools(self) -> st.SearchStrategy[Tool]:
-        return st.just(FLANGE)
 
-    def work_objects(self) -> st.SearchStrategy[WorkObject]:
-        return st.just(WORLD)
-
-    def loads(self) -> st.SearchStrategy[Load | None]:
-        return st.none()
-
-    def arcs(self) -> st.SearchStrategy[ArcOrientation]:
-        return st.just(ArcOrientation.FIXED_FRAME)
-
-    def labelled(self, kind: type[Move]) -> bool:
-        return False
+def _stated(speed: Speed) -> list[bool]:
+    return [value is None for value in (speed.tcp, speed.reorientation)]
 
 
 JOB = """\

@@ -117,7 +117,12 @@ _JOINT = frozenset({"joint_fraction", "acceleration_override", "duration"})
 _LINE = frozenset({"tcp", "reorientation", "acceleration_override", "duration"})
 _ONE = frozenset({"tcp", "reorientation", "duration"})
 TP = Dialect(
-    joint=MoveWords((CNT, CR), _JOINT, frozenset({"joint_fraction"})),
+    joint=MoveWords(
+        (CNT, CR),
+        _JOINT,
+        frozenset({"joint_fraction"}),
+        exclusive=frozenset({"joint_fraction", "duration"}),
+    ),
     line=MoveWords((CNT, CR), _LINE, exclusive=_ONE),
     arc=MoveWords((CNT, CR), _LINE, exclusive=_ONE),
     pace="joint_fraction",
@@ -130,11 +135,14 @@ TP = Dialect(
     length_decimals=3,
     angle_decimals=3,
     fastest=2.0,
+    most={"acceleration_override": 1.5},
     outputs=OutputWords(
         lambda name, on: f"{name}={'ON' if on else 'OFF'}",
         lambda name, value: f"{name}={value:g}",
         longest_lead=30.0,
         from_start=False,
+        both=False,
+        most=1,
     ),
     signals=SignalWords(_read, _said, _spelt, _example, stops=False),
     wording=Wording(

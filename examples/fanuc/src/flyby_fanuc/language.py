@@ -15,6 +15,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import VendorZone
+from flyby.core.recording import Recording
 from flyby.core.robot.model import Robot
 from flyby.core.source.lines.files import with_called
 from flyby.core.source.lines.interpreter import run_lines
@@ -25,13 +26,13 @@ from flyby.core.source.patch.edits import Edit
 from flyby.core.source.patch.uses import MovePart, Use, UseKind
 from flyby.core.source.reading import Files, ReadOptions, read_with
 from flyby.core.source.text.files import SourceFile
-from flyby.core.source.write.options import OpaqueStyle, PatcherOptions, WriterOptions
+from flyby.core.source.write.options import PatcherOptions, WriterOptions
 from flyby.core.source.write.refusals import check_said
 
 from .dialect import TP
 from .grammar import Grammar, lines
 from .moves import Place, numbers_of
-from .record import logger
+from .record import USUAL_PERIOD, record, steps
 from .writer import (
     Writer,
     amount,
@@ -67,7 +68,7 @@ class Language:
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer`; the option is ``opaque``."""
-        name = program_name(program)
+        name = program_name(program.name)
         return {f"{name}.ls": Writer(WriterOptions.of(options, "TP writer")).text(program, name)}
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
@@ -75,16 +76,17 @@ class Language:
         chosen = PatcherOptions.of(options, "TP patcher")
         return patch_lines(program, chosen, _numbers_of, _number, _own)
 
-    def record(self, program: Program, robot: Robot, period: float) -> Sources:
-        """The program, and a KAREL program that logs the joints beside it."""
-        name = program_name(program)
-        log = logger(robot, period)
-        writer = Writer(
-            WriterOptions(OpaqueStyle.COMMENT),
-            ("  RUN FLYBY_LOG", "  WAIT .5(sec)"),
-            ("  WAIT .5(sec)", "  FLG[1]=OFF"),
-        )
-        return {f"{name}.ls": writer.text(program, name), "flyby_log.kl": log}
+    def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
+        """See `flyby.core.language.Recorder`."""
+        return record(recording, robot, period)
+
+    def usual_period(self, robot: Robot) -> float:
+        """See `flyby.core.language.Recorder`."""
+        return USUAL_PERIOD
+
+    def steps(self, recording: Recording, period: float) -> list[str]:
+        """See `flyby.core.language.Recorder`."""
+        return steps(recording)
 
 
 def _read(files: Files, main: str, options: ReadOptions) -> Program:

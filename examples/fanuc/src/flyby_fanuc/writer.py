@@ -24,7 +24,7 @@ from .configuration import FanucConfiguration
 from .dialect import CR, TP
 from .moves import UNITS, numbers_of
 
-_HEAD = """\
+HEAD = """\
 /PROG  {name}
 /ATTR
 OWNER\t\t= MNEDITOR;
@@ -33,6 +33,7 @@ DEFAULT_GROUP\t= 1,*,*,*,*;
 CONTROL_CODE\t= 00000000 00000000;
 /MN
 """
+TAIL = "/END\n"
 _SCRATCH = 100
 """The position register that frames go through."""
 _REMARK = 32
@@ -41,6 +42,7 @@ _REMARK = 32
 
 def number(value: float) -> str:
     """Three decimals as controllers write them, more where these do not say it."""
+    value = round(value, 9)
     text = f"{value:.3f}"
     if abs(float(text) - value) >= 1e-10:
         return f"{value:.9f}"
@@ -107,7 +109,7 @@ class Writer:
         said = lines_of_statements(program, self._wait, self._opaque, self._move)
         lines = [*self.before, *self.setup, *said, *self.after]
         numbered = "".join(f"{k + 1:>4}:{line} ;\n" for k, line in enumerate(lines))
-        return f"{_HEAD.format(name=name)}{numbered}/POS\n{''.join(self.positions)}/END\n"
+        return f"{HEAD.format(name=name)}{numbered}/POS\n{''.join(self.positions)}{TAIL}"
 
     def _wait(self, wait: Wait) -> Iterator[str]:
         yield f"  WAIT {amount(wait.duration)}(sec)"
@@ -116,11 +118,14 @@ class Writer:
         if self.options.opaque is OpaqueStyle.KEEP:
             yield f"  {kept.text}"
             return
-        text = " ".join(kept.text.removeprefix(TP.comment).replace(";", ",").split())
+        yield from self._remark(kept.text)
+
+    def _remark(self, kept: str) -> Iterator[str]:
+        text = " ".join(kept.removeprefix(TP.comment).replace(";", ",").split())
         for at in range(0, len(text), _REMARK):
             yield f"  !{text[at : at + _REMARK]}"
 
-    def _move(self, move: Move, index: int) -> Iterator[str]:
+    def _move(self, move: Move, *_: object) -> Iterator[str]:
         check_said(move, TP, "TP")
         frame = self._number(
             self.frames,
@@ -144,23 +149,19 @@ class Writer:
         kind = type(move).__name__[-1]
         override = move.speed.acceleration_override
         options = f" ACC{amount(100 * override)}" if override != 1.0 else ""
-        options += "".join(self._event(event) for event in move.events)
         if len(move.events) > 1:
             raise InputError("TP does one thing on the way of a move")
-        if (
-            isinstance(move, MoveJ)
-            and move.speed.duration is not None
-            and move.speed.joint_fraction != 1.0
-        ):
-            raise InputError("TP says a time or a share of the speed")
+        for event in move.events:
+            if self.options.opaque is OpaqueStyle.KEEP:
+                options += self._event(event)
+            else:
+                yield from self._remark(event.text)
         pace, zone = speed_text(move, move.speed), zone_text(move.zone)
         yield f"{kind} {' '.join(names)} {pace} {zone}{options}"
 
     def _event(self, event: Event) -> str:
         if event.anchor is not EventAnchor.END or (event.distance and event.time):
             raise InputError("TP counts times or distances on the way from the end of a move")
-        if self.options.opaque is not OpaqueStyle.KEEP:
-            return ""
         if event.distance:
             return f" DB {amount(1000 * event.distance)}mm,{event.text}"
         return f" {'TB' if event.time >= 0 else 'TA'} {amount(abs(event.time))}sec,{event.text}"
@@ -180,7 +181,7 @@ class Writer:
         return found
 
 
-def program_name(program: Program) -> str:
+def program_name(name: str) -> str:
     """A name that TP takes: 36 letters, digits and ``_`` at most."""
-    name = re.sub(r"\W+", "_", program.name, flags=re.ASCII).upper()[:36]
+    name = re.sub(r"\W+", "_", name, flags=re.ASCII).upper()[:36]
     return name if name[:1].isalpha() else f"P_{name}"[:36]

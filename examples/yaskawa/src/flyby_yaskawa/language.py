@@ -85,6 +85,7 @@ SPEAKS = Dialect(
     external_axes=False,
     orientation=Orientation.EULER_ZYX,
     fastest=1.5,
+    most={"acceleration_override": 1.0},
 )
 _POSITION = re.compile(r"(?P<name>[CP]\d+)=(?P<values>[-+.\d, ]+)")
 _MOTION = re.compile(
@@ -393,7 +394,7 @@ class Language:
             positions.append(f"{head}\nC{len(positions):05}={numbers}")
             return f"C{len(positions) - 1:05}"
 
-        def move(move: Move, index: int) -> Iterator[str]:
+        def move(move: Move, *_: object) -> Iterator[str]:
             check_said(move, SPEAKS, "JBI")
             said = f"{_speed(move)} PL={_level(move.zone)}{_acceleration(move.speed)}".strip()
             if isinstance(move, MoveC):
