@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
@@ -218,7 +219,7 @@ class SourceChecks(Subject):
         for name, one in texts.items():
             pairs = zip(one.splitlines(), quiet[name].splitlines(), strict=True)
             for number, (line, left) in enumerate(pairs, 1):
-                if sign and line.strip().startswith(sign):
+                if sign and _NUMBERED.sub("", line).strip().startswith(sign):
                     assert not left.strip(), told(
                         f"{text.about!r}: a comment counts as text",
                         written=f"{name}:{number}: {line}",
@@ -249,6 +250,10 @@ def changes(program: Program) -> Iterator[PartChange]:
             changed = program.with_moves(tuple(moves))
             origin = getattr(move.origin, part)
             yield PartChange(index, part, changed, origin, move.origin.statement)
+
+
+_NUMBERED = re.compile(r"^\s*\d+\s*:")
+"""The number of a line, where a language has them."""
 
 
 def _other(part: str, old: Any, move: Move) -> Any:

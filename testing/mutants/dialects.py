@@ -13,7 +13,7 @@ from ...core.program.speed import Speed
 from ...core.program.zone import ContourFraction
 from ...core.vendor import Vendor
 from ..checks.subject import Subject
-from .mutant import Mutant, has, is_searched, knows_signals, sets_outputs, speaks
+from .mutant import Mutant, has, is_searched, knows_signals, names_targets, sets_outputs, speaks
 from .statements import GOLDEN, WORDS
 from .wrapping import Plant
 
@@ -142,7 +142,7 @@ MUTANTS = (
     Mutant("zones said to have no words", _moves(lambda w: replace(w, zones=())), WITHIN, speaks),
     Mutant(
         "speeds said to have no words",
-        _moves(lambda w: replace(w, speeds=w.needs)),
+        _moves(lambda w: replace(w, speeds=w.needs, exclusive=w.exclusive & w.needs)),
         WITHIN,
         _more_speeds,
     ),
@@ -223,12 +223,12 @@ MUTANTS = (
         "declarations are not found",
         _wording(lambda w: replace(w, targets=_NOTHING)),
         WORDING,
-        is_searched,
+        names_targets,
     ),
     Mutant(
         "names are cut",
         _wording(lambda w: replace(w, name=re.compile(r"[^\W\d]\w?"), named=None)),
         WORDING,
-        is_searched,
+        names_targets,
     ),
 )

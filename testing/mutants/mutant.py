@@ -54,6 +54,14 @@ def knows_signals(suite: Subject) -> bool:
     return suite.signals is not None
 
 
+def names_targets(suite: Subject) -> bool:
+    """Whether its texts are searched, and its reader gives targets the names of their data."""
+    if not is_searched(suite):
+        return False
+    programs = map(suite.read_golden, suite.golden_texts)
+    return any(move.target.name for program in programs for move in program.moves)
+
+
 def is_searched(suite: Subject) -> bool:
     """Whether its texts are searched."""
     return suite.vendor.speaks is not None and suite.vendor.speaks.wording is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from difflib import SequenceMatcher
@@ -48,9 +49,11 @@ def _first_change(old: str, new: str) -> int:
 
 
 def _without_comments(sign: str) -> Callable[[Files, Files], Files]:
+    numbered = re.compile(rf"\s*(?:\d+\s*:\s*)?{re.escape(sign)}")
+
     def left(file: SourceFile) -> SourceFile:
         lines = file.text.splitlines(keepends=True)
-        kept = [line for line in lines if not line.strip().startswith(sign)]
+        kept = [line for line in lines if not numbered.match(line)]
         return replace(file, text="".join(kept))
 
     return lambda files, _: {key: left(file) for key, file in files.items()}

@@ -22,7 +22,7 @@ from ..execution.endings import Loop
 from ..execution.flow import Flow
 from ..execution.limits import Meter
 from ..execution.outputs import Outputs
-from ..execution.provenance import MovePart, Reads
+from ..execution.provenance import MovePart, Reads, Source
 from ..execution.scopes import unknown_name
 from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
@@ -111,6 +111,8 @@ class _Interpreter:
         self.meter = Meter(options.limits, options.executed)
         self.outputs = Outputs()
         self.place: object = None
+        self._standing: tuple[Source | None, ...] = ()
+        self._counted_on = False
         self._out = Transcript(program.text_of, self.course)
         self._tree = Statements(program, grammar)
         self._analysis = Analysis(self._tree)
@@ -357,6 +359,7 @@ class _Interpreter:
     @property
     def before(self) -> move.Move | None:
         """See `Situation`."""
+        self._counted_on = True
         return self.place if isinstance(self.place, move.Move) else None
 
     def number(self, datum: Expression) -> float:
@@ -384,6 +387,7 @@ class _Interpreter:
         found = [None if one is None else self._operand(one) for one in operands]
         numbers = [Numbers() if one is None else one[0] for one in found]
         self._computed.clear()
+        self._counted_on = False
         if not all(math.isfinite(number) for one in numbers for number in one):
             raise SourceError("a number is larger than controllers hold", statement.span)
         try:
@@ -400,6 +404,10 @@ class _Interpreter:
             for source in filter(None, part.sources):
                 self._reads.by_move(source, self._out.move_index)
                 self._reads.by_expression(source, self._out.move_index)
+        for source in filter(None, self._standing if self._counted_on else ()):
+            self._reads.by_expression(source, self._out.move_index)
+        own = found[0][1].sources if found[0] else ()
+        self._standing = (*own, *(self._standing if self._counted_on else ()))
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
 

@@ -101,7 +101,7 @@ def _routines(text: str) -> Iterator[RoutineText]:
 def _named(text: str) -> Iterator[tuple[str, Mention]]:
     """Data by word and number; an assignment is one that begins a statement."""
     for found in _DATUM.finditer(text):
-        name = found[0] + "]" if "[" in found[0] else found[0]
+        name = found[0].rstrip() + "]" if "[" in found[0] else found[0]
         given = _GIVEN.match(text, found.end())
         before = text[
             max(text.rfind("\n", 0, found.start()), text.rfind(";", 0, found.start()))
@@ -146,8 +146,10 @@ TP = Dialect(
     ),
     signals=SignalWords(_read, _said, _spelt, _example, stops=False),
     wording=Wording(
-        silent=re.compile(r"^[ \t]*\d*:[ \t]*(?:!|//|--eg)[^\r\n]*|'[^'\r\n]*'", re.M),
-        targets=re.compile(r"^[ \t]*(?P<names>P\[\d+(?::[^\]\r\n]*)?\])\s*\{", re.M),
+        silent=re.compile(
+            r"^[ \t]*\d*:[ \t]*(?:!|//|--eg)[^\r\n]*|'[^'\r\n]*'|(?<=\d):[^\[\]\r\n]*(?=\])", re.M
+        ),
+        targets=re.compile(r"^[ \t]*(?P<names>P\[\d+[ ]*\])\s*\{", re.M),
         name=re.compile(r"\bPR?\[\d+"),
         same_case=True,
         routines=_routines,
