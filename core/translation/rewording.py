@@ -133,7 +133,7 @@ class Rewording:
     # -------------------------------------------------------------------------- moves
 
     def _move(self, move: Move) -> list[Statement]:
-        events, found, behind = [], list[Statement](), list[Statement]()
+        events, found, behind = list[Event](), list[Statement](), list[Statement]()
         for event in move.events:
             action = self._action_of(event)
             said = None if action is None else self._on_the_way(action, event.span)

@@ -382,7 +382,7 @@ def _beyond(spoken: Dialect, move: Move) -> Iterator[str]:
     for name in sorted(stated - words.speeds):
         yield f"the speed {name} of {kind}"
     if "duration" not in stated:
-        for name in sorted(words.needs - stated):
+        for name in sorted(n for n in words.needs if getattr(move.speed, n) is None):
             yield f"a {kind} without {name}, which it says is needed"
     if (move.speed.tcp or 0.0) > spoken.fastest:
         yield f"{move.speed.tcp} m/s, beyond the fastest ({spoken.fastest} m/s)"

@@ -148,12 +148,18 @@ def _paced_by_shares(suite: Subject) -> bool:
     return spoken is not None and "joint_fraction" in spoken.joint.speeds
 
 
+def _turns(suite: Subject) -> bool:
+    spoken = suite.vendor.speaks
+    said = _TURNS if spoken is None else {*spoken.joint.speeds, *spoken.line.speeds}
+    return any(name in said for name in _TURNS)
+
+
 MUTANTS = (
     Mutant("zones 100 times as large", _both(_zones, 100.0), GOLDEN),
     Mutant("zones as diameters", _both(_zones, 0.5), GOLDEN),
     Mutant("zones a little larger", _both(_zones, 1.02), GOLDEN),
     Mutant("speeds of the TCP in mm/s", _both(_speeds("tcp"), 1000.0), GOLDEN),
-    Mutant("speeds of turning in degrees/s", _both(_speeds(*_TURNS), _DEGREES), GOLDEN),
+    Mutant("speeds of turning in degrees/s", _both(_speeds(*_TURNS), _DEGREES), GOLDEN, _turns),
     Mutant(
         "shares of speed halved", _both(_speeds("joint_fraction"), 0.5), GOLDEN, _paced_by_shares
     ),

@@ -15,7 +15,12 @@ import pytest
 from flyby.core import hookspec, vendor
 from flyby.core.errors import InputError, SourceError
 from flyby.core.motion.model.provenance import read_provenance
+from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import PoseTarget
 from flyby.core.registry import Registry
+from flyby.core.source.write.refusals import check_said
+from flyby.core.spatial.pose import Pose
 from flyby.testing.conformance import VendorConformance
 
 ROOT = Path(__file__).parents[2]
@@ -87,6 +92,33 @@ def test_the_golden_texts_of_the_page_are_what_its_plugin_reads(
     suite.golden = tmp_path / "golden.toml"
     with pytest.raises(AssertionError, match=r"speed\.tcp: 0\.2 stated, 0\.25 read"):
         suite.test_golden_texts_mean_what_their_author_says()
+
+
+def test_a_language_without_arcs_passes_the_suite(page: ModuleType, tmp_path: Path) -> None:
+    golden = next(text for text in blocks("toml") if "[[texts]]" in text)
+    (tmp_path / "golden.toml").write_text(golden, "utf-8")
+    speaks = replace(page.SPEAKS, arc_orientations=frozenset())
+    page.SPEAKS, kept = speaks, page.SPEAKS
+    try:
+
+        class Suite(page.TestAcme):  # type: ignore[name-defined, misc]
+            vendor = replace(page.acme(), speaks=speaks)
+
+        suite = Suite()
+        suite.golden = tmp_path / "golden.toml"
+        assert suite.kinds == (MoveJ, MoveL)
+        suite.test_golden_texts_cover_the_language()
+        suite.test_every_word_of_the_dialect_is_written_and_read()
+        suite.test_speeds_that_are_not_needed_may_be_left_out()
+        suite.test_what_is_written_is_read_again()
+        suite.test_a_patch_gives_the_changed_program()
+        suite.test_what_is_written_moves_alike()
+        here = PoseTarget(Pose((0.5, 0.0, 0.5)))
+        arc = MoveC(here, Speed(tcp=0.1), via=here, orientation=ArcOrientation.FIXED_FRAME)
+        with pytest.raises(InputError, match="ACME has no arcs: use lines"):
+            check_said(arc, speaks, "ACME")
+    finally:
+        page.SPEAKS = kept
 
 
 def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
 from flyby.core.program.zone import FINE, VendorZone
+from flyby.core.recording import RecordedRun, Recording
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.execution.answers import Answers
 from flyby.core.translation.hand_out import check_driven
@@ -246,3 +248,20 @@ def test_arcs_by_a_go_through_every_second_position() -> None:
     assert moves[2].via.pose.position == pytest.approx((0.38, 0.06, 0.1))
     with pytest.raises(SourceError, match="the arc before has no end"):
         FANUC.read(text(*lines[:2], "L P[3] 9mm/sec FINE", positions=places), "job.ls")
+
+
+def test_several_runs_are_called_and_each_has_its_log(tmp_path: Path) -> None:
+    runs = [FANUC.read(text(f"J P[1] {k}0% FINE", positions=pose(1, 400)), "a.ls") for k in (1, 2)]
+    recorded = (RecordedRun(runs[0], "one.csv"), RecordedRun(runs[1], "two.csv", by_hand=True))
+    recording = Recording("both", recorded)
+    sources = FANUC.recorder.record(recording, LR_MATE, FANUC.recorder.usual_period(LR_MATE))
+    for file, said in sources.items():
+        (tmp_path / file).write_text(said)
+    assert list(sources) == ["BOTH.ls", "RUN01.ls", "RUN02.ls", "flyby_log.kl"]
+    again = FANUC.read_file(tmp_path / "BOTH.ls")
+    assert [move.speed.joint_fraction for move in again.moves] == pytest.approx([0.1, 0.2])
+    called = re.findall(r"CALL \w+|PAUSE", sources["BOTH.ls"])
+    assert called == ["CALL RUN01", "PAUSE", "CALL RUN02"]
+    assert "CASE (2): OPEN FILE log_file ('RW', 'UD1:two.csv')" in sources["flyby_log.kl"]
+    assert "R[100]=2" in sources["RUN02.ls"]
+    assert any("run 2 it pauses" in step for step in FANUC.recorder.steps(recording, 0.024))
