@@ -146,8 +146,16 @@ def _release(
     def reread(program: Program, files: Files) -> Program:
         return replace(reading_of(program).again(files), setup=member.program.setup)
 
+    speaks = setup_of_program(member.program).vendor.speaks
+    wording = None if speaks is None else speaks.wording
     earlier = EarlierReleases(
-        feasibility, name, scenes_of(member.cell), start_of(member.program), reread, outputs
+        feasibility,
+        name,
+        scenes_of(member.cell),
+        start_of(member.program),
+        reread,
+        outputs,
+        str if wording is None else wording.quiet,
     )
     for run, certificate, files in earlier.run():
         _put(feasibility, name, solutions, run, certificate, files)

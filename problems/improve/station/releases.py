@@ -1,9 +1,11 @@
 """Outputs that others wait for, set as early as is proven: their statements move up in the text.
 
 A statement moves before a move that is driven earlier, line and all; the program is read again, and
-taken if it is proven beside the others in every order, and the station ends earlier. Places between
-moves are all that is tried: triggers on the way would be earlier still. An output may also say that
-something has been done, which no proof knows of: those that only give space free are named.
+taken if it is proven beside the others as well as before, and the station ends earlier. Places
+between moves are all that is tried: triggers on the way would be earlier still. It moves past
+statements that are carried out, and nothing else: past the word of a block, it would be carried out
+on another condition, or another number of times. An output may also say that something has been
+done, which no proof knows of: those that only give space free are named.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from ....core.collision.proof.certificate import SceneOf
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError
 from ....core.motion.emulator.run import Run
-from ....core.program.move import Opaque
+from ....core.program.move import Move, Opaque
 from ....core.program.program import Program
 from ....core.program.signal import SetSignal
 from ....core.program.target import JointTarget
@@ -43,6 +45,7 @@ class EarlierReleases:
         start: where the robot stands; None for the program's own start.
         reread: the program as it is read from its files with others of these texts.
         outputs: keys of the outputs that may come earlier: they only give space free.
+        quiet: blanks out what is comment in a text of the program's language.
     """
 
     feasibility: StationFeasibility
@@ -51,6 +54,7 @@ class EarlierReleases:
     start: JointTarget | None
     reread: Callable[[Program, Files], Program]
     outputs: frozenset[str]
+    quiet: Callable[[str], str]
 
     def run(self) -> Iterator[tuple[Run, Certificate, Files]]:
         """Programs that were taken over, one after the other, with the files that changed."""
@@ -125,7 +129,10 @@ class EarlierReleases:
         begin, end = _line(file.text, span.start, span.end)
         at, _ = _line(file.text, place.start, place.start)
         line = file.text[begin:end]
-        if not line.endswith("\n") or not file.text[begin : span.start].isspace():
+        alone = file.text[begin : span.start] + self.quiet(file.text[span.end : end])
+        if not line.endswith("\n") or alone.replace(";", "").strip():
+            return None
+        if self._left(program, span.file, file.text, at, end):
             return None
         changed = {span.file: file.edited([(at, at, line), (begin, end, "")])}
         try:
@@ -133,6 +140,16 @@ class EarlierReleases:
         except FlybyError:
             return None
         return (read, changed) if _same(program, read) else None
+
+    def _left(self, program: Program, file: str, text: str, begin: int, end: int) -> str:
+        """What a stretch of a text holds beside comments and statements that are carried out."""
+        left = self.quiet(text[begin:end])
+        for statement in program.statements:
+            span = statement.statement if isinstance(statement, Move) else statement.span
+            if span is not None and span.file == file and begin <= span.start <= span.end <= end:
+                first, last = span.start - begin, span.end - begin
+                left = left[:first] + " " * (last - first) + left[last:]
+        return left.replace(";", "").strip()
 
 
 def _line(text: str, begin: int, end: int) -> tuple[int, int]:

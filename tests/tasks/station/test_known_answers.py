@@ -237,3 +237,27 @@ def test_an_output_that_is_early_enough_stays(write: Write) -> None:
     file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
     made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
     assert not made.changed
+
+
+@pytest.mark.parametrize(
+    "behind",
+    [
+        (f"IF 1 = 1 THEN\n {OUT};\n {BACK};\n ENDIF", "SetDO done, 1"),
+        (OUT, BACK, "IF 1 = 1 THEN\n SetDO done, 1;\n ENDIF"),
+        (OUT, BACK, "SetDO done, 1; SetDO other, 1"),
+    ],
+    ids=["into a block", "out of a block", "with what is not to move"],
+)
+def test_an_output_stays_on_its_own_condition(write: Write, behind: tuple[str, ...]) -> None:
+    """Moved into a block it would not be set where the block is left out, and the other way."""
+    one = [OUT, IN, OUT, BACK, *behind, OUT]
+    file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
+    made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
+    assert not made.changed
+
+
+def test_an_output_moves_past_comments_and_from_the_first_column(write: Write) -> None:
+    one = [OUT, IN, OUT, BACK, "! away\n  WaitTime 0.1", OUT, BACK, "! free\nSetDO done, 1", OUT]
+    file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
+    made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
+    assert made.after.duration < made.before.duration - 0.3 and made.proven
