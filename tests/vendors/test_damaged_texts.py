@@ -43,9 +43,8 @@ LANGUAGES = tuple(ROBOTS)
 
 
 def read(language: str, *lines: str, text: str = "{}", goes_on: bool = True) -> Program:
-    whole = (
-        text.format("\n".join(lines)) if text != "{}" else FRAME[language].format("\n".join(lines))
-    )
+    frame = FRAME[language] if text == "{}" else text
+    whole = frame.replace("{}", "\n".join(lines))
     return find_vendor(language).read(
         whole,
         SUFFIX[language],
@@ -79,6 +78,76 @@ def test_a_damaged_motion_goes_where_nobody_knows(language) -> None:
     span = made.moves[1].statement
     assert span is not None
     assert span.line == FRAME[language].partition("{}")[0].count("\n") + 2
+
+
+MORE_MOTIONS = {
+    "abb": ("GlueL pA v100, glue1, fine, tool0;", "MoveExtJ jA v1;", "ArcLStart pA v100, s, w;"),
+    "kuka": ("SPTP_REL {A1 1 A2 2}", "SLIN XP1 WITH $VEL=2 {"),
+    "ur": ("optimovel(p[0,0,0", "servoj([0,0,0,0,0,0]"),
+}
+"""Motions that have other words than the everyday ones."""
+CALLED = {
+    "abb": (
+        "MODULE demo\nPROC main()\n{}\nENDPROC\nPROC away()\n%s\nENDPROC\nENDMODULE\n",
+        "away 1 2;",
+    ),
+    "kuka": ("DEF demo( )\nBAS(#INITMOV,0)\n{}\nEND\nDEF away( )\n%s\nEND\n", "away(1 2)"),
+    "ur": ("def demo():\n  def away():\n%s\nend\n{}\nend\n", "away(1 2"),
+}
+"""A routine that moves, and a call of it that is damaged."""
+SETS = {
+    "abb": "p10:=[[450,0,600],[0,0,1,0][0,0,0,0]];",
+    "kuka": "XP1={X 1300,Y 0 Z,900}",
+    "ur": "p10 = p[-0.45,0.1,0.4,2.2214,2.2214,0",
+}
+USED = {
+    "abb": "MoveJ p10,v100,fine,tool0;",
+    "kuka": "PTP XP1",
+    "ur": "movej(p10)",
+}
+
+
+@pytest.mark.parametrize(
+    ("language", "line"), [(v, line) for v in LANGUAGES for line in MORE_MOTIONS[v]]
+)
+def test_no_damaged_motion_is_lost(language, line) -> None:
+    made = read(language, HOME[language], line, LOW[language])
+    assert [bool(move.open) for move in made.moves] == [False, True, False]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_damaged_call_of_what_moves_goes_where_nobody_knows(language) -> None:
+    text, call = CALLED[language]
+    made = read(language, HOME[language], call, LOW[language], text=text % LOW[language])
+    assert [bool(move.open) for move in made.moves] == [False, True, False]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_a_damaged_line_sets_is_not_known_any_more(language) -> None:
+    given = {
+        "abb": "p10:=[[450,0,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];",
+        "kuka": "XP1={X 1300,Y 0,Z 900,A 0,B 90,C 0}",
+        "ur": "p10 = p[-0.45,0.1,0.3,2.2214,2.2214,0]",
+    }[language]
+    text = {
+        "abb": FRAME["abb"].replace("VAR num n;", "VAR robtarget p10;"),
+        "kuka": FRAME["kuka"].replace("BAS", "DECL E6POS XP1\nBAS", 1),
+        "ur": FRAME["ur"],
+    }[language]
+    lines = (HOME[language], given, USED[language], SETS[language], USED[language])
+    made = read(language, *lines, text=text)
+    assert [bool(move.open) for move in made.moves] == [False, False, True]
+
+
+def test_a_damaged_declaration_hides_others_of_its_name() -> None:
+    place = "[[450,0,500],[0,0,1,0],[0,0,0,0]%s[9E9,9E9,9E9,9E9,9E9,9E9]]"
+    text = (
+        f"MODULE other\nCONST robtarget p10:={place % ','};\nENDMODULE\n"
+        f"MODULE demo\nLOCAL CONST robtarget p10:={place % ''};\nPROC main()\n{{}}\nENDPROC\n"
+        "ENDMODULE\n"
+    )
+    made = read("abb", HOME["abb"], USED["abb"], text=text)
+    assert [bool(move.open) for move in made.moves] == [False, True]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

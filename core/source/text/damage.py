@@ -7,6 +7,7 @@ that nobody closes), or nothing is left to drive, its first damage is the error.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from ...errors import Note, ParseError, SourceError
@@ -15,6 +16,8 @@ MOST = 40
 """Statements of a file that are stepped over; a text with more of them is another language's."""
 _TOLD = 8
 """Of a file that have a note of their own."""
+
+_WORD = re.compile(r"[^\W\d]\w*")
 
 
 class Damage:
@@ -62,6 +65,11 @@ class Damage:
             span = self.errors[_TOLD].span
             found.append(Note(f"{rest} further such places in the file", span=span))
         return tuple(found)
+
+
+def words_in(text: str) -> frozenset[str]:
+    """The words of a damaged stretch of text."""
+    return frozenset(_WORD.findall(text))
 
 
 def nothing_driven(damages: Sequence[Damage], driven: bool) -> None:

@@ -61,6 +61,17 @@ class Text(Term):
 
 
 @dataclass(frozen=True, slots=True)
+class Unreadable(Term):
+    """A value that cannot be read, in a text that is read all the same.
+
+    Args:
+        message: why.
+    """
+
+    message: str
+
+
+@dataclass(frozen=True, slots=True)
 class Truth(Term):
     """``TRUE`` or ``FALSE``."""
 
@@ -190,11 +201,13 @@ class Unread(Statement):
 
     Args:
         message: why.
-        moves: whether it looks like a motion.
+        words: in it, lower case: of motions and routines, among others.
+        target: the datum that it would set; None for none.
     """
 
     message: str
-    moves: bool
+    words: frozenset[str]
+    target: Expression | None = None
 
     @property
     def error(self) -> SourceError:

@@ -93,14 +93,25 @@ class RapidTree:
             )
         if isinstance(statement, tree.Invoke | tree.LateInvoke):
             return self._invoked(statement, home, functions, names, given)
+        if isinstance(statement, tree.Unread):
+            return self.unread(statement, home)
         written = {statement.target.name} if isinstance(statement, tree.Assign) else NOTHING
         return Step(
-            moves=isinstance(statement, tree.Unread) and statement.moves,
             writes=given | written,
             made_of=names,
             calls=functions,
             asks=bool(functions),
             exit=Exit.ROUTINE if isinstance(statement, tree.Return) else None,
+        )
+
+    def unread(self, statement: tree.Unread, home: Home) -> Step[tree.Block]:
+        """What a damaged statement may do, by the words in it."""
+        found = (self._data.routine(word, home) for word in sorted(statement.words))
+        target = statement.target
+        return Step(
+            moves=not MOVING.isdisjoint(statement.words),
+            writes=frozenset({target.name}) if isinstance(target, tree.Name) else NOTHING,
+            calls=tuple(self.body(routine) for routine in found if routine is not None),
         )
 
     def _handed(self, name: str, arguments: Sequence[tree.Argument], home: Home) -> Iterator[str]:

@@ -43,7 +43,7 @@ from .flow import run_for, run_if, run_test, run_while
 from .instructions import INTERPRETED, MOVING, refusal
 from .kept import KEPT, REFUSED
 from .recovery import Frame, Retry, TryNext, raised, recover
-from .traps import connect
+from .traps import connect, share_written
 
 
 class _Returned(Exception):
@@ -292,9 +292,22 @@ class Interpreter:
             self.flow.label(id(statement))
         elif isinstance(statement, tree.Keyword):
             self._keyword(statement, scope)
-        elif isinstance(statement, tree.Unread) and not (
-            statement.moves and self._open_move(statement.error, statement.span)
-        ):
+        elif isinstance(statement, tree.Unread):
+            self._unread(statement, scope)
+
+    def _unread(self, statement: tree.Unread, scope: Scope) -> None:
+        """What is damaged: nobody knows what it does to what it names."""
+        step = self.tree.unread(statement, scope.home)
+        line = f"line {statement.span.line}"
+        if isinstance(statement.target, tree.Name):
+            reason = f"the value of {statement.target.text}, damaged in {line}"
+            with suppress(SourceError):  # a constant stays one
+                unknown = Unknown(reason, statement.span)
+                self.evaluator.assign(statement.target, unknown, scope)
+        for body in step.calls:
+            share_written(self, body, f"a damaged call in {line}", statement.span)
+        moves = step.moves or any(map(self.analysis.moves, step.calls))
+        if not moves or not self._open_move(statement.error, statement.span):
             self.out.keep(statement.span, "", "")
 
     def _keyword(self, statement: tree.Keyword, scope: Scope) -> None:

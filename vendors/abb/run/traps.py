@@ -48,10 +48,21 @@ def connect(run: TrapsRun, trap: Routine, span: Span) -> None:
             "program is driven as if it never came",
             span,
         )
+    share_written(run, body, f"TRAP {trap.text}", span)
+
+
+def share_written(run: TrapsRun, body: Block, writer: str, span: Span) -> None:
+    """What a routine writes is not known from now on: nobody knows when, or with what, it runs.
+
+    Args:
+        body: of the routine.
+        writer: for messages.
+        span: where that comes from.
+    """
     run.evaluator.outputs.share(run.analysis.outputs_written(body))
     for part, names in run.analysis.written_apart(body):
         routine = run.tree.routine(part)
         own = {d.name for d in routine.declarations} | {p.name for p in routine.parameters}
         for name in sorted(names - own):
             datum = Name(span, name, name)
-            run.evaluator.share(datum, f"TRAP {trap.text}", run.data.scope_of(routine))
+            run.evaluator.share(datum, writer, run.data.scope_of(routine))

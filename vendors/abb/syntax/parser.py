@@ -27,6 +27,7 @@ from .tree import (
     Parameter,
     RecordDefinition,
     Routine,
+    Unreadable,
 )
 
 STORAGE = ("const", "var", "pers")
@@ -129,15 +130,36 @@ def _attributes(cursor: Cursor) -> tuple[str, ...]:
 
 
 def _mended(cursor: Cursor, start: int, local: bool = False) -> list[Declaration]:
-    """A declaration; none where it is damaged and may be stepped over."""
+    """A declaration; without what it declares where it is damaged and may be stepped over."""
     begin, depth = cursor.index, cursor.depth
     try:
         return [_declaration(cursor, start, local)]
     except ParseError as error:
         cursor.step_over(error)
+        found = _declared(cursor, begin, start, local, error.message)
         cursor.depth = depth
         cursor.skip_statement(begin, (*_PARTS, *CLOSING))
+        return found
+
+
+def _declared(
+    cursor: Cursor, begin: int, start: int, local: bool, message: str
+) -> list[Declaration]:
+    """The datum of a damaged declaration, with a value that nobody can read: another datum of its
+    name is not meant."""
+    stopped, cursor.index = cursor.index, begin + 1
+    try:
+        type_name = cursor.name("a type").lower()
+        text = cursor.name("the name of the datum")
+        dimensions = parse_braces(cursor) if cursor.kind == "{" else ()
+    except ParseError:
         return []
+    finally:
+        cursor.index = stopped
+    span = cursor.source.span(start, max(start, cursor.end))
+    value = Unreadable(span, message)
+    kind = cursor.kinds[begin]
+    return [Declaration(span, kind, type_name, text.lower(), text, dimensions, value, local)]
 
 
 def _declaration(cursor: Cursor, start: int, local: bool = False) -> Declaration:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from ....core.errors import ParseError, SourceError
+from ....core.source.text.damage import words_in
 from . import tree
 from .cursor import Cursor
 from .expressions import parse_arguments, parse_expression, parse_name
@@ -59,11 +59,13 @@ def _unread(cursor: Cursor, begin: int, depth: int, error: SourceError) -> tree.
     cursor.depth = depth
     cursor.skip_statement(begin, _BEGINNING)
     span = cursor.source.span(cursor.starts[begin], cursor.end)
-    moves = _MOTION.search(cursor.source.text, span.start, span.end) is not None
-    return tree.Unread(span, error.message, moves)
-
-
-_MOTION = re.compile(r"(?i)(?<!\w)(?:move(?:abs)?|trigg|search|arc|spot|disp|paint)[ljc](?!\w)")
+    words = words_in(cursor.source.text[span.start : span.end].lower())
+    target = None
+    if cursor.kinds[begin] == NAME and ":=" in cursor.kinds[begin : cursor.index]:
+        first = cursor.source.span(cursor.starts[begin], cursor.ends[begin])
+        text = cursor.source.text[first.start : first.end]
+        target = tree.Name(first, text.lower(), text)
+    return tree.Unread(span, error.message, words, target)
 
 
 def parse_statement(cursor: Cursor) -> Statement:

@@ -25,6 +25,7 @@ Text = nodes.Text
 Truth = nodes.Truth
 Unary = nodes.Unary
 Unread = nodes.Unread
+Unreadable = nodes.Unreadable
 While = nodes.While
 
 

@@ -119,6 +119,9 @@ class Evaluator:
                 raise error.at(expression.span) from None
         if isinstance(expression, tree.Call):
             return function_value(self, self._host.call_function, self._special, expression, scope)
+        if isinstance(expression, tree.Unreadable):
+            reason = f"what no controller takes (line {expression.span.line}: {expression.message})"
+            return Unknown(reason, expression.span)
         return _star(expression)
 
     def locate(self, expression: tree.Expression, scope: Scope, asking: bool = True) -> Located:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 
 from ....core.errors import SourceError
 from ....core.source.execution.steps import NOTHING, Exit, Step
+from ....core.source.text.lexer import words
 from ..syntax import tree
 from ..syntax.traversal import calls_in, data_in, indices_in
 from ..values.data import Data
@@ -17,6 +19,7 @@ from .instructions import kept
 
 NATIVE = frozenset({"bas"})
 """Routines of KUKA's own that are carried out natively."""
+_MOVING = words("ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc sptp_rel slin_rel scirc_rel")
 _LOOPS = (tree.For, tree.While, tree.Repeat, tree.Loop)
 
 
@@ -91,6 +94,8 @@ class KrlTree:
             return Step(exit=Exit.LOOP)
         if isinstance(statement, tree.Halt):
             return Step(halts=True)
+        if isinstance(statement, tree.Unread):
+            return self.unread(statement, home)
         evaluated = tuple(_evaluated(statement))
         names = self.data_read(evaluated, home)
         functions = tuple(self._functions(evaluated, home))
@@ -119,14 +124,26 @@ class KrlTree:
             return self._invoked(statement.call, home, functions, names, handed)
         writes, outputs = self._assigned(statement, home)
         return Step(
-            moves=isinstance(statement, tree.MotionInstruction | tree.SplineBlock)
-            or (isinstance(statement, tree.Unread) and statement.moves),
+            moves=isinstance(statement, tree.MotionInstruction | tree.SplineBlock),
             writes=handed | writes,
             made_of=names,
             outputs=outputs,
             calls=functions,
             asks=bool(functions),
             exit=Exit.ROUTINE if isinstance(statement, tree.Return) else None,
+        )
+
+    def unread(self, statement: tree.Unread, home: Module) -> Step[tree.Block]:
+        """What a damaged statement may do, by the words in it."""
+        target = statement.target
+        bodies: list[tree.Block | None] = []
+        for word in sorted(statement.words):
+            with suppress(SourceError):  # said where it is called
+                bodies.append(self.called(tree.Call(statement.span, word, word, ()), home))
+        return Step(
+            moves=not _MOVING.isdisjoint(statement.words),
+            writes=frozenset({target.name}) if isinstance(target, tree.Name) else NOTHING,
+            calls=tuple(body for body in bodies if body is not None),
         )
 
     def _assigned(

@@ -116,7 +116,7 @@ class Interpreter:
         targets = Targets(robot, position, notes.once)
         tables = Tables(robot, notes)
         basis = Basis(data, evaluator, config, tables, notes, self._system_changed)
-        tree = KrlTree(data, evaluator.names, scopes)
+        self._tree = tree = KrlTree(data, evaluator.names, scopes)
         self._analysis = analysis = Analysis(tree)
         writes = OutputWrites(data, evaluator.names, tree, analysis, notes)
         self._triggers = Triggers(evaluator, transcript, writes)
@@ -284,7 +284,17 @@ class Interpreter:
             self._position.left_out(statement.span)
 
     def _unread(self, statement: Unread, scope: Scope) -> None:
-        if not statement.moves:
+        # Nobody knows what it does to what it names.
+        step = self._tree.unread(statement, scope.module)
+        target = statement.target
+        if isinstance(target, Name):
+            reason = f"the value of {target.text}, damaged in line {statement.span.line}"
+            unknown = Unknown(reason, statement.span)
+            with suppress(SourceError):  # a constant stays one
+                self._evaluator.assign(target, unknown, scope, statement.span)
+            if target.name in MOTION:
+                self._system_changed()
+        if not step.moves and not any(map(self._analysis.moves, step.calls)):
             self._transcript.keep(statement.span, "", "")
         elif self._transcript.leaves_open(statement.error, statement.span):
             self._meter.move(statement.span)

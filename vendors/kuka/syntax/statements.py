@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 
 from ....core.errors import ParseError, SourceError, Span
+from ....core.source.text.damage import words_in
 from ....core.source.text.lexer import words
 from . import tree
 from .closed_folds import parse_closed
@@ -66,11 +66,23 @@ def _unread(cursor: Cursor, begin: int, depth: int, error: SourceError) -> tree.
         cursor.skip_line()
     span = cursor.source.span(cursor.starts[begin], cursor.ends[max(begin, cursor.index - 1)])
     cursor.accept(NEWLINE)
-    moves = _MOTION.search(cursor.source.text, span.start, span.end) is not None
-    return tree.Unread(span, error.message, moves)
+    words = words_in(cursor.source.text[span.start : span.end].lower())
+    return tree.Unread(span, error.message, words, _target(cursor, begin))
 
 
-_MOTION = re.compile(r"(?i)(?<![\w$])s?(?:ptp|lin|circ)(?:_rel)?(?![\w$])")
+def _target(cursor: Cursor, begin: int) -> tree.Name | None:
+    """What a damaged line would set: ``$VEL.CP``."""
+    at, path = begin + 1, []
+    while cursor.kinds[at : at + 2] == [".", NAME]:
+        path.append(cursor.source.text[cursor.starts[at + 1] : cursor.ends[at + 1]].lower())
+        at += 2
+    if cursor.kinds[begin] != NAME or cursor.kinds[at] not in ("=", "["):
+        return None
+    if cursor.kinds[at] == "[" and "=" not in cursor.kinds[at : cursor.index]:
+        return None
+    span = cursor.source.span(cursor.starts[begin], cursor.ends[at - 1])
+    name = cursor.source.text[cursor.starts[begin] : cursor.ends[begin]]
+    return tree.Name(span, name.lower(), name, () if cursor.kinds[at] == "[" else tuple(path))
 
 
 def parse_statement(cursor: Cursor) -> tuple[Statement, ...]:

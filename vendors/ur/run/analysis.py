@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from ....core.source.execution.steps import Exit, Step
+from ....core.source.text.lexer import words
 from ..syntax import tree
 from ..syntax.traversal import (
     all_statements,
@@ -22,6 +23,9 @@ from ..values.lists import METHODS
 from ..values.outputs import read_by, written_by
 
 _EXITS = {"break": Exit.LOOP, "continue": Exit.PASS, "halt": Exit.PROGRAM}
+
+
+_MOVING = frozenset({*MOVES, *words("servoj servoc speedj speedl")})
 
 
 class ScriptTree:
@@ -60,14 +64,15 @@ class ScriptTree:
         return [self._step(s) for s in block if not isinstance(s, tree.Define)]
 
     def _step(self, statement: tree.Statement) -> Step[tree.Block]:
+        if isinstance(statement, tree.Unread):
+            return self.unread(statement)
         expressions = expressions_of(statement)
         inner = tuple(statement.blocks)
         called = {name for e in expressions for name in _called(e)}
         foreign = {name for name in called if name not in self._functions}
         names = frozenset[str]().union(*map(self.reads, expressions))
         return Step(
-            moves=not foreign.isdisjoint(MOVES)
-            or (isinstance(statement, tree.Unread) and statement.moves),
+            moves=not foreign.isdisjoint(MOVES),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
             made_of=names,
@@ -78,6 +83,15 @@ class ScriptTree:
             inner=inner,
             loop=isinstance(statement, tree.While),
             exhaustive=isinstance(statement, tree.If) and statement.otherwise is not None,
+        )
+
+    def unread(self, statement: tree.Unread) -> Step[tree.Block]:
+        """What a damaged statement may do, by the words in it."""
+        target = statement.target
+        return Step(
+            moves=not _MOVING.isdisjoint(statement.words),
+            writes=frozenset() if target is None else frozenset({target.text}),
+            calls=self.bodies(sorted(statement.words)),
         )
 
     # -------------------------------------------------------------------- threads

@@ -270,7 +270,11 @@ def _keyword(run: Interpreter, statement: Keyword, scope: Scope) -> None:
 
 def _unread(run: Interpreter, statement: Unread, scope: Scope) -> None:
     span = run.texts.span_of(statement)
-    if statement.moves:
+    step = run.tree.unread(statement)
+    if statement.target is not None:
+        reason = f"'{statement.target.text}', damaged in line {span.line}"
+        store(run, statement.target, Located(Unknown(reason, span)), scope)
+    if step.moves or any(map(run.analysis.moves, step.calls)):
         run.stopped_somewhere(SourceError(statement.message, span), span)
     else:
         run.out.keep(span, "", "")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 
 from ....core.errors import Note, ParseError
-from ....core.source.text.lexer import words
+from ....core.source.text.damage import words_in
+from ....core.source.text.lexer import NAME, words
 from . import tree
 from .cursor import Cursor
 from .expressions import parse_expression
@@ -60,11 +60,20 @@ def _mended(cursor: Cursor) -> Statement:
             while cursor.kind not in (LINE, END):
                 cursor.index += 1
         start, end = cursor.starts[begin], cursor.ends[max(begin, cursor.index - 1)]
-        moves = _MOTION.search(cursor.source.cut(start, end)) is not None
-        return tree.Unread(start, end, error.message, moves)
+        words = words_in(cursor.source.cut(start, end))
+        return tree.Unread(start, end, error.message, words, _target(cursor, begin))
 
 
-_MOTION = re.compile(r"(?<!\w)(?:(?:opti)?move[jlpc]|servo[jc]|speed[jl])(?!\w)")
+def _target(cursor: Cursor, begin: int) -> tree.Name | None:
+    """The variable that a damaged line would set."""
+    at = begin + (cursor.kinds[begin] in ("global", "local"))
+    sets = cursor.kinds[at + 1] != "(" and "=" in cursor.kinds[at : cursor.index]
+    if cursor.kinds[at] != NAME or not sets:
+        return None
+    start, end = cursor.starts[at], cursor.ends[at]
+    return tree.Name(start, end, cursor.source.cut(start, end))
+
+
 _PYTHON = ("for", "import", "from", "try", "class", "print", "lambda")
 """Words that begin statements of Python."""
 

@@ -40,11 +40,13 @@ class Unread(Statement):
 
     Args:
         message: why.
-        moves: whether it looks like a motion.
+        words: in it: of motions and functions, among others.
+        target: the variable that it would set; None for none.
     """
 
     message: str
-    moves: bool
+    words: frozenset[str]
+    target: Name | None = None
 
 
 @dataclass(frozen=True, slots=True)
