@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...core.door import spelt
-from ...core.errors import Note, OptionError
+from ...core.errors import MotionError, Note, OptionError
 from ..options import texts
 from ..options.entries import DISTANCE, NOT_NEGATIVE, number, value
 from ..options.keywords import by_keywords
@@ -16,6 +16,7 @@ from ..setup import CellOptions, start_of, with_setup
 
 if TYPE_CHECKING:
     from ...core.program.program import Program
+    from ...core.spatial.pose import Pose
     from .placed import PlacedRobot
 
 _ROOM = "500,500,0,45"
@@ -42,7 +43,7 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
     """Find the base from which a program is driven fastest, all targets in reach, and prove it.
 
     Targets stay where they are in the world; those by joint values move with the base. Labels of
-    configurations are given up, as other bases have others.
+    configurations that other bases contradict are given up there, with a note.
 
     Args:
         program: as `flyby.read` gives it.
@@ -66,6 +67,15 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
         start=start_of(program),
     )
     found = place(lambda robot: Controller(vendor, robot), program, cell, task, options.say)
+
+    def refused_from(base: Pose) -> MotionError | None:
+        """Why the program cannot be driven from a base as its configurations say."""
+        try:
+            Controller(setup.vendor, cell.robot.with_base(base)).run(program, task.start)
+        except MotionError as error:
+            return error
+        return None
+
     notes = []
     if setup.vendor.speaks is not None and not setup.vendor.speaks.work_objects:
         notes.append(
@@ -74,6 +84,16 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
                 "to be stated anew"
             )
         )
+    for which, placed in (("as it is", found.before), ("the best", found.best)):
+        refused = None if placed is None else refused_from(placed.base)
+        if refused is not None:
+            notes.append(
+                Note(
+                    f"{which}: its time and clearance are with targets in the solutions nearest to "
+                    "where the robot comes from, as the configurations that the program states "
+                    f"cannot be driven from there ({refused}): state them anew for that base"
+                )
+            )
     return PlacedRobot(program, cell, task.clearance, found, tuple(notes))
 
 

@@ -65,7 +65,7 @@ class PlacedRobot:
         """The base as a cell file says it; empty if none is proven."""
         if self.base is None:
             return ""
-        xyz = ", ".join(f"{1e3 * v + 0.0:.6g}" for v in self.base.position)
+        xyz = ", ".join(f"{1e3 * v + 0.0:.9g}" for v in self.base.position)
         quaternion = ", ".join(f"{v + 0.0:.9g}" for v in self.base.quaternion)
         return f"base = {{ xyz_mm = [{xyz}], quat_wxyz = [{quaternion}] }}"
 

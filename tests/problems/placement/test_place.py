@@ -108,3 +108,30 @@ def test_the_command_says_the_line_of_the_cell_file(tmp_path: Path) -> None:
     assert made.exit_code == 0 and "base = { xyz_mm = [" in made.stdout
     made = CliRunner().invoke(app, [*words[:-1], "10,10"])
     assert made.exit_code == 1 and "no base is proven" in made.stdout
+
+
+def test_configurations_that_a_base_contradicts_are_said(tmp_path: Path) -> None:
+    """The program as it stands would stop there: neither time is one that it drives."""
+    program, cell = write(tmp_path, [(x - 440, y, z) for x, y, z in ROUND])
+    kept = flyby.place(flyby.read(program, cell=cell), room=(0.0, 0.0, 0.0, 0.0))
+    assert not kept.notes
+    text = program.read_text().replace("ConfJ \\Off;", "").replace("ConfL \\Off;", "")
+    program.write_text(text.replace("[0,0,0,0],", "[0,-2,0,1],", 1))
+    made = flyby.place(flyby.read(program, cell=cell), room=(0.0, 0.0, 0.0, 0.0))
+    assert made.proven
+    before, best = (note.message for note in made.notes)
+    assert before.startswith("as it is: ") and best.startswith("the best: ")
+    assert "[0,-2,0,1] contradicts the pose" in best
+
+
+def test_the_line_says_the_base_that_is_proven(tmp_path: Path) -> None:
+    program, _ = write(tmp_path, [(x - 440, y, z) for x, y, z in ROUND])
+    cell = tmp_path / "cell.toml"
+    cell.write_text(cell.read_text() + "base = { xyz_mm = [0, 0, 12.3456789] }\n")
+    made = flyby.place(flyby.read(program, cell=cell), room=(1 / 3, 0.0, 0.0, 0.0))
+    assert made.base is not None
+    placed = tmp_path / "placed.toml"
+    text = cell.read_text()
+    placed.write_text(text[: text.index("base")] + made.line + "\n")
+    base = flyby.read(program, cell=placed).setup.robot.base
+    assert np.allclose(base.position, made.base.position, atol=1e-8)
