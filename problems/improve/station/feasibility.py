@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from itertools import combinations
@@ -179,10 +180,8 @@ class StationFeasibility:
         ordered = bearing(station, actions)
         orders = None
         if self._known:
-            try:
+            with suppress(InputError):
                 orders = explore(station, ordered)
-            except InputError:
-                self._known = False
         run = StationClock(station, actions).run()
         prover = StationProver(station, ordered, None if before is None else before.prover)
         return StationSnapshot(station, actions, run, orders, prover)
@@ -212,6 +211,8 @@ class StationFeasibility:
         if never is not None:
             return _refusal(f"beside the other robots {never}")
         before = self.state
+        if state.orders is None and before.orders is not None:
+            return _refusal("in which orders the signals let the robots on is not known any more")
         if _may_lock(state) and not _may_lock(before):
             return _refusal("beside the other robots the signals would allow a deadlock")
         if state.duration > before.duration * (1.0 + _LATER):

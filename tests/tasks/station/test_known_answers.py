@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import flyby
-from flyby.core.errors import FlybyError
+from flyby.core.errors import FlybyError, InputError
+from flyby.core.station.orders import Orders, explore
+from flyby.problems.improve.station import feasibility
 
 from .stations import UNUSED, Write
 
@@ -261,3 +264,22 @@ def test_an_output_moves_past_comments_and_from_the_first_column(write: Write) -
     file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
     made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
     assert made.after.duration < made.before.duration - 0.3 and made.proven
+
+
+def test_what_is_not_known_to_keep_apart_is_not_taken(
+    write: Write, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Orders that cannot be told of a changed program: interlocks prove nothing of it."""
+    one = [OUT, IN, OUT, BACK, OUT, BACK, "SetDO done, 1", OUT]
+    file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
+    asked = []
+
+    def once(*given: Any) -> Orders:
+        asked.append(given)
+        if len(asked) > 1:
+            raise InputError("too many orders")
+        return explore(*given)
+
+    monkeypatch.setattr(feasibility, "explore", once)
+    made = flyby.station_optimize(file, zones_only=True, full_speed=True, release=["one.done"])
+    assert len(asked) > 1 and not made.changed
