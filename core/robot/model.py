@@ -135,11 +135,6 @@ class Robot:
                     )
 
     @property
-    def has_followers(self) -> bool:
-        """Whether rods or gears turn one of the arm's joints with another."""
-        return any(joint.followers for joint in self.joints)
-
-    @property
     def has_held(self) -> bool:
         """Whether the arm has no motor for some of its joints."""
         return any(joint.held for joint in self.joints)

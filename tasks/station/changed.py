@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
@@ -118,16 +118,13 @@ class ChangedStation:
     def _text(self, places: Mapping[str, str], made: Mapping[str, bytes], out: Path | None) -> str:
         """The station file with the new programs' places."""
         text = self.file.read_text(encoding="utf-8")
-        heads = list(_TABLE.finditer(text))
         parts, last = [], 0
-        for found in _PATHS.finditer(text):
-            head = [h for h in heads if h.start() < found.start()][-1:]
-            keys = [word.strip(" \"'") for word in head[0]["name"].split(".")] if head else []
-            if len(keys) != 2 or keys[0] != "robot" or keys[1] not in places:
+        for robot, found in _paths(text):
+            if robot not in places:
                 continue
             given = found[3][1:-1]
             if found[2] == "program":
-                new = _place_of(PurePath(given).name, keys[1], made)
+                new = _place_of(PurePath(given).name, robot, made)
             elif out is None:
                 new = Path(os.path.abspath(self.file.parent / given)).as_posix()
             else:
@@ -175,6 +172,32 @@ class ChangedStation:
 
     def _repr_html_(self) -> str:
         return page(repr(self), table(ROBOTS, self.robot_rows()), notes=self.notes)
+
+
+def refuse_unwritable(file: Path, robots: Iterable[str]) -> None:
+    """Refuse a station file in which the programs' places cannot be changed.
+
+    Raises:
+        InputError: naming the robot.
+    """
+    found = _paths(file.read_text(encoding="utf-8"))
+    known = {robot for robot, path in found if path[2] == "program"}
+    for name in robots:
+        if name not in known:
+            raise InputError(
+                f"{file.name}: the new place of {name}'s program can be written only where its old "
+                f"one has a line of its own, below [robot.{name}]: write it so"
+            )
+
+
+def _paths(text: str) -> Iterator[tuple[str, re.Match[str]]]:
+    """The robots' paths in a station file, with whose they are."""
+    heads = list(_TABLE.finditer(text))
+    for found in _PATHS.finditer(text):
+        head = [h for h in heads if h.start() < found.start()][-1:]
+        keys = [word.strip(" \"'") for word in head[0]["name"].split(".")] if head else []
+        if len(keys) == 2 and keys[0] == "robot":
+            yield keys[1], found
 
 
 def _said(solution: Solution) -> str:

@@ -86,11 +86,12 @@ def changed_station(
         MotionError: the station never ends, or does not keep its clearances, as it is.
     """
     from ...problems.improve.station.feasibility import StationFeasibility
-    from .changed import ChangedStation
+    from .changed import ChangedStation, refuse_unwritable
 
     if not is_station_file(Path(source)):
         raise InputError(f"{source}: programs of station files (.toml) are improved together")
     opened = open_station(Path(source), options.say)
+    refuse_unwritable(Path(source), opened.station.members)
     shares = _shares(opened, options)
     members = opened.station.members
     words = {}

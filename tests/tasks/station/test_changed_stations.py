@@ -84,6 +84,20 @@ def test_what_does_not_keep_clear_is_not_improved(tmp_path: Path) -> None:
         flyby.station_zones(write(tmp_path, programs))
 
 
+def test_places_that_cannot_be_changed_are_refused_before_work_begins(tmp_path: Path) -> None:
+    """Else the new station file would name the programs as they were."""
+    file = write(tmp_path, round_the_other())
+    head, *robots = file.read_text().split("[robot.")
+    inline = [
+        f"{name} = {{ cell = '{name}.toml', program = '{name}.mod' }}\n"
+        for name in (robot.partition("]")[0] for robot in robots)
+    ]
+    file.write_text("".join([head, "[robot]\n", *inline]))
+    assert flyby.station(file, no_proof=True).duration > 0.0
+    with pytest.raises(FlybyError, match=r"left's program .* below \[robot\.left\]"):
+        flyby.station_zones(file)
+
+
 def test_options_say_of_which_robot(station: Path) -> None:
     with pytest.raises(FlybyError, match=r"keep 2: of which robot\? Write left\.2"):
         flyby.station_zones(station, keep=["2"])
