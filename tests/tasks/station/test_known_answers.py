@@ -269,7 +269,7 @@ def test_an_output_moves_past_comments_and_from_the_first_column(write: Write) -
 def test_what_is_not_known_to_keep_apart_is_not_taken(
     write: Write, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Orders that cannot be told of a changed program: interlocks prove nothing of it."""
+    """Orders of a changed program that are not known: interlocks prove nothing of it."""
     one = [OUT, IN, OUT, BACK, OUT, BACK, "SetDO done, 1", OUT]
     file = write({"one": one, "two": [OUT, "WaitDI go, 1", IN, OUT]}, ONE_TO_TWO, gap=650.0)
     asked = []
