@@ -143,7 +143,7 @@ class SignalWords:
 
     Args:
         read: what a statement does with signals; None if that is not known, or nothing.
-        said: the statement of an action; None if there is none.
+        said: the statement of an action; None if there is none, as to set an input.
         spelt: a signal as the language spells it; None for what is no name of one.
         example: what a signal of such an action is called, with ``?`` for what the user fills in.
         event: the statement that the text of an event on the way is short for.

@@ -108,7 +108,15 @@ class Rewording:
                 others[name] = other
         if set(names(action)) - others.keys():
             return None
+        settable = new.signals.example(action) if isinstance(action, SetSignal) else None
         action = renamed(action, others)
+        if isinstance(action, SetSignal) and new.signals.said(replace(action, pulse=None)) is None:
+            (old_name,) = others
+            self.losses.statement(
+                span,
+                f"no program sets {action.name!r}, which the answers call {old_name!r}: "
+                f"name an output, such as {settable!r}",
+            )
         if isinstance(action, WaitSignal) and action.longest is not None:
             self.losses.statement(
                 span, f"waits without an end: the longest time ({action.longest:g} s) has no words"

@@ -109,3 +109,12 @@ def test_one_row_of_the_map_serves_all_directions(old, new) -> None:
     name = words(old).spelt(row[old])
     assert table.name(name, words(old), words(new)) == (None if old == new else expected)
     assert table.name("other", words(old), words(new)) is None
+
+
+@pytest.mark.parametrize(
+    ("vendor", "name"),
+    [("kuka", "$IN[1]"), ("kuka", "$anin[2]"), ("ur", "digital_in[1]"), ("ur", "analog_in[0]")],
+)
+def test_no_program_sets_an_input(vendor, name) -> None:
+    value = 0.5 if "an" in name else True
+    assert words(vendor).said(SetSignal(name, value)) is None

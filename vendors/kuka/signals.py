@@ -22,6 +22,7 @@ _LEVEL = re.compile(
     r"(?:\s*(?P<sign>==|<>)\s*(?P<value>TRUE|FALSE)\b)?",
     re.IGNORECASE,
 )
+_INPUT = re.compile(r"\$(?:AN)?IN\[.*", re.IGNORECASE)
 _NUMBERED = re.compile(r"\$(?:(?:AN)?(?:IN|OUT)|FLAG)\[\d+\]", re.IGNORECASE)
 
 
@@ -76,6 +77,8 @@ def said(action: SignalAction) -> str | None:
     """The statement; None if there is none."""
     if isinstance(action, WaitSignal):
         return f"WAIT FOR {_CONDITIONS.said(action.condition, _level_said)}"
+    if _INPUT.fullmatch(action.name):
+        return None
     if action.pulse is not None:
         return f"PULSE({action.name},TRUE,{action.pulse:g})"
     if isinstance(action.value, bool):

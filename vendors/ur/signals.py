@@ -70,6 +70,8 @@ def said(action: SignalAction) -> str | None:
     if action.pulse is not None:
         return None
     kind, what, index = _parts(action.name)
+    if not what.endswith("_out"):
+        return None
     value = str(action.value) if isinstance(action.value, bool) else f"{action.value:g}"
     return f"set_{kind}{what}({index}, {value})"
 

@@ -121,7 +121,7 @@ def sources(draw: st.DrawFn) -> str:
     )
 
 
-def made_of(text: str, name: str, cycles: int = 1, keep: bool = True):
+def made_of(text: str, name: str, cycles: int = 1, keep: bool = True, signals: SignalMap = SIGNALS):
     old, new = find_vendor("abb"), find_vendor(name.split("/")[0])
     if name.startswith("ur/"):  # nearer, where it reaches
         text = text.replace("[[1050,0,650]", "[[700,0,350]").replace(
@@ -129,7 +129,7 @@ def made_of(text: str, name: str, cycles: int = 1, keep: bool = True):
         )
     program = old.reader.read(text, "cell.mod", options(cycles))
     sides = (old, find_robot(OLD)), (new, find_robot(name))
-    return translate(program, *sides, keep=keep, signals=SIGNALS)
+    return translate(program, *sides, keep=keep, signals=signals)
 
 
 def written(made, name: str, structure: str) -> dict[str, str]:
@@ -405,3 +405,13 @@ def test_what_cannot_be_driven_as_written_is_refused_with_the_old_line() -> None
     with pytest.raises(MotionError, match="what would be written for kuka/kr30-3 is at fault") as e:
         check_driven(made, far, find_vendor("kuka"), robot)
     assert e.value.span.line == PICKS[: PICKS.index("    MoveJ Offs(p1,0,0,100)")].count("\n") + 1
+
+
+def test_an_output_that_the_answers_call_an_input_is_not_set() -> None:
+    text = HEAD + "    MoveL p1, v500, fine, tGrip;\n    Set doGrip;\n  ENDPROC\nENDMODULE\n"
+    for robot, name in (("kuka/kr30-3", "$IN[3]"), ("ur/ur10e", "digital_in[1]")):
+        made = made_of(text, robot, signals=SignalMap.of({"doGrip": [name]}))
+        told = [note.message for note in made.losses]
+        assert any(m.startswith(f"no program sets '{name}', which the answers") for m in told)
+        lines = [s.text for s in made.program.statements if isinstance(s, Opaque)]
+        assert all(line.startswith((";", "#")) for line in lines) and lines
