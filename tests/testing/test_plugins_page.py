@@ -15,7 +15,8 @@ import pytest
 from flyby.core import hookspec, vendor
 from flyby.core.errors import InputError, SourceError
 from flyby.core.motion.model.provenance import read_provenance
-from flyby.core.program.move import ArcOrientation, MoveC, MoveJ, MoveL
+from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
 from flyby.core.registry import Registry
