@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import ClassVar, Generic, Self, TypeVar
 
 from ...errors import SourceError, Span
+from .damage import STEPPED_OVER
 from .lexer import END, END_OF_LINE, NAME, STRAY, Source, Tokens
 
 Item = TypeVar("Item")
@@ -134,7 +135,7 @@ class TokenCursor(Generic[Source]):
             self.source.damage.torn = True
         return self.unexpected(wanted)
 
-    def step_over(self, error: SourceError, then: str = "it is stepped over") -> None:
+    def step_over(self, error: SourceError, then: str = STEPPED_OVER) -> None:
         """Go on behind a statement that is none.
 
         Args:

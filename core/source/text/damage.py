@@ -12,6 +12,8 @@ from collections.abc import Sequence
 
 from ...errors import Note, ParseError, SourceError
 
+STEPPED_OVER = "it is stepped over, and a speed, tool or frame that it would set stays as it was"
+"""What is done about most damage."""
 MOST = 40
 """Statements of a file that are stepped over; a text with more of them is another language's."""
 _TOLD = 8
@@ -35,7 +37,7 @@ class Damage:
         self._mended: list[str] = []
         self.torn = False
 
-    def step_over(self, error: SourceError, then: str = "it is stepped over") -> None:
+    def step_over(self, error: SourceError, then: str = STEPPED_OVER) -> None:
         """Go on behind an error.
 
         Args:
