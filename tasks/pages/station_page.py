@@ -161,9 +161,9 @@ class _StationPage:
         if ends:
             facts["ends last"] = made.bottleneck
         for pair in made.clearances:
-            kept = "proven in time" if pair.in_time.proven else "not proven"
-            near = f"{1e3 * pair.least:.1f} mm" if pair.least > 0.0 else "touch"
-            facts[" – ".join(pair.robots)] = f"{near}, {kept}"
+            kept = f"{1e3 * made.station.clearance:g} mm" if pair.in_time.proven else "not"
+            near = f"{1e3 * pair.least:.1f} mm met" if pair.least > 0.0 else "touch"
+            facts[" – ".join(pair.robots)] = f"{near}, {kept} proven in time"
         return facts
 
     def _shares(self) -> Sequence[PageShare]:

@@ -213,3 +213,22 @@ def test_axes_that_move_beside_the_program(krl, line):
     program = krl(INIT + f"{line}\nLIN XP1", P1)
     assert heights(program) == [1000]
     assert "move beside the program are not emulated" in said(program)
+
+
+def test_which_of_several_configurations_is_taken_is_said(tmp_path):
+    def config(folder, height):
+        folder.mkdir(exist_ok=True)
+        data = "DECL GLOBAL E6POS far={" + POSE % height + "}"
+        (folder / "$config.dat").write_text(f"DEFDAT $CONFIG\n{data}\nENDDAT")
+
+    main = tmp_path / "main.src"
+    main.write_text(f"DEF main( )\n{INIT}LIN far\nEND")
+    config(tmp_path / "line1", 900)
+    assert "differing" not in said(Krl().read_file(main, ReadOptions()))
+    config(tmp_path / "line2", 800)
+    program = Krl().read_file(main, ReadOptions())
+    assert heights(program) == [900]
+    assert "2 differing $config.dat" in said(program) and "line2" in said(program)
+    config(tmp_path, 700)
+    program = Krl().read_file(main, ReadOptions())
+    assert heights(program) == [700] and "differing" not in said(program)

@@ -31,6 +31,10 @@ def stem_of(name: str) -> str:
     return name.replace("\\", "/").rpartition("/")[2].rpartition(".")[0].lower()
 
 
+def _folder(name: str) -> str:
+    return name.replace("\\", "/").rpartition("/")[0]
+
+
 def suffix_of(name: str) -> str:
     """Suffix of a file name with its dot, lower case."""
     return "." + name.rpartition(".")[2].lower()
@@ -64,7 +68,7 @@ class Library:
         self.texts: dict[str, str] = {}
         self.main_unit = self._parse(main)
         self.main = self._main_module(main)
-        self.config = self._config()
+        self.config = self._config(main)
 
     # ---------------------------------------------------------------------- modules
 
@@ -100,8 +104,7 @@ class Library:
     @staticmethod
     def _beside(main: str, names: list[str]) -> list[str]:
         """Those in the main file's own folder first."""
-        folder = main.replace("\\", "/").rpartition("/")[0]
-        return sorted(names, key=lambda n: n.replace("\\", "/").rpartition("/")[0] != folder)
+        return sorted(names, key=lambda name: _folder(name) != _folder(main))
 
     @staticmethod
     def _beside_main(names: list[str]) -> list[str]:
@@ -130,17 +133,31 @@ class Library:
             self.damages.append(damage)
         return unit
 
-    def _config(self) -> list[Module]:
+    def _config(self, main: str) -> list[Module]:
         """The user's ``$CONFIG.DAT``, if there is one, and the one that is shipped."""
         modules = []
         users = self.module(CONFIG)
         if users is not None:
             modules.append(users)
+            self._tell_config(main)
         text = resources.files(__package__).joinpath("../data/config.dat").read_text("utf-8")
         shipped = self._modules[SHIPPED] = Module(SHIPPED)
         self._add(shipped, parse(SourceText(text, SHIPPED)))
         self.texts[SHIPPED] = text
         return [*modules, shipped]
+
+    def _tell_config(self, main: str) -> None:
+        """Which of several ``$CONFIG.DAT`` is taken: that of another cell has other bases."""
+        found = [name for name in self._sources[CONFIG] if suffix_of(name) == ".dat"]
+        others = [n for n in found[1:] if self._files[n].text != self._files[found[0]].text]
+        if others and _folder(found[0]) != _folder(main):
+            self.notes.append(
+                Note(
+                    f"{len(others) + 1} differing $config.dat lie around the program: tools and "
+                    f"bases are those of {found[0]}, not of {', '.join(others)}; put the right one "
+                    "beside the program"
+                )
+            )
 
     # ------------------------------------------------------------------------ look-ups
 
