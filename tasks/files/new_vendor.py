@@ -6,6 +6,8 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ...core.errors import InputError
+from ...core.files.reading import MOST_TOML_BYTES, read_text
+from ...core.files.writing import write_files
 from ...core.hookspec import API
 from ...core.registry import installed
 from ...core.vendor import NAME
@@ -54,16 +56,14 @@ def new_vendor(name: str, folder: str | Path | None = None) -> tuple[Path, ...]:
         "@api@": str(API),
         "@version@": version("flyby"),
     }
-    written = []
+    made: dict[Path, bytes] = {}
     for source in sorted(SKELETON.glob("*.txt")):
         plain = source.name.removesuffix(".txt")
         target = place / _said(_PLACES.get(plain, plain), words)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(_said(source.read_text("utf-8"), words), "utf-8")
-        written.append(target)
-    first = place / "src" / module / "__init__.py"
-    first.write_text(f'"""{name.upper()} for flyby."""\n', "utf-8")
-    return (*written, first)
+        made[target] = _said(read_text(source, MOST_TOML_BYTES), words).encode()
+    made[place / "src" / module / "__init__.py"] = f'"""{name.upper()} for flyby."""\n'.encode()
+    write_files(made, place)
+    return tuple(made)
 
 
 def _said(text: str, words: dict[str, str]) -> str:

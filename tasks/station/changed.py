@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ...core.display import in_line
 from ...core.door import spelt, switched
 from ...core.errors import InputError, Note
+from ...core.files.reading import MOST_TOML_BYTES, read_text
 from ...core.notebook import page, table
 from ...core.source.patch.runnable import runnable_files
 from ...core.station.station import RobotStation
@@ -117,7 +118,7 @@ class ChangedStation:
 
     def _text(self, places: Mapping[str, str], made: Mapping[str, bytes], out: Path | None) -> str:
         """The station file with the new programs' places."""
-        text = self.file.read_text(encoding="utf-8")
+        text = read_text(self.file, MOST_TOML_BYTES)
         parts, last = [], 0
         for robot, found in _paths(text):
             if robot not in places:
@@ -180,7 +181,7 @@ def refuse_unwritable(file: Path, robots: Iterable[str]) -> None:
     Raises:
         InputError: naming the robot.
     """
-    found = _paths(file.read_text(encoding="utf-8"))
+    found = _paths(read_text(file, MOST_TOML_BYTES))
     known = {robot for robot, path in found if path[2] == "program"}
     for name in robots:
         if name not in known:

@@ -245,7 +245,8 @@ def test_a_log_that_is_only_slower_is_not_explained_by_physics(
     for one in found["parameters"]:
         assert one["value"] == pytest.approx(TRUE[one["name"]], rel=0.05)
     (scale,) = found["time_scales"]
-    assert "a time scale of 1.020" in scale["says"] and "check override and clock" in scale["says"]
+    assert "took 2.0 % longer than emulated, evenly" in scale["says"]
+    assert "check override and clock" in scale["says"]
 
 
 def test_a_model_that_predicts_worse_is_not_written_unforced(

@@ -42,7 +42,8 @@ def test_what_is_no_program_is_told_before_a_robot_is_asked_for(
     assert f"{tmp_path / 'mistyped.mod'}: there is no such file or folder" in result.stderr
     if command != "diff":
         (tmp_path / "cell.toml").write_text("", "utf-8")
-        assert "no vendor reads '.toml' files" in flyby(command, tmp_path / "cell.toml").stderr
+        told = "a station has two robots" if command == "check" else "no vendor reads '.toml' files"
+        assert told in flyby(command, tmp_path / "cell.toml").stderr
 
 
 def test_units_of_a_mesh_are_asked_for_by_name(flyby: Flyby, tmp_path: Path) -> None:

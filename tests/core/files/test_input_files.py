@@ -272,6 +272,8 @@ def test_there_is_one_door_for_files() -> None:
         "drawing/page/html.py",  # a file of this package
         "tasks/diff/state.py",  # bytes that came in by the door
         "tasks/pages/show.py",  # a browser
+        "vendors/ur/record.py",  # a file of this package
+        "vendors/ur/flyby_listen.py",  # run by the user, without this package
     }
     calls = {"read_text", "read_bytes", "write_text", "write_bytes", "open"}
     found = set()

@@ -43,6 +43,7 @@ HAND_MADE = {
     "abb/irb1600-6-145",
     "abb/irb6640-180-255",
     "abb/irb6640-235-255",
+    "abb/irb580-16",  # wider: its hollow wrist is longer than the rule knows
     "kuka/kr3-r540",
     "kuka/kr30-3",
 }
