@@ -264,11 +264,16 @@ def in_steps(q: FloatArray, dq: FloatArray, sigma: FloatArray) -> FloatArray:
 
 
 def nearest_of(moves: Sequence[MoveClearance]) -> tuple[Approach | None, Approach | None]:
-    """The least clearance to the cell, and between the arm's own parts."""
+    """The least clearance to the cell, and between the arm's own parts; of equal ones the first."""
     cell = [move.cell for move in moves if move.cell is not None]
     own = [move.own for move in moves if move.own is not None]
-    least = [min(side, key=lambda met: met.distance, default=None) for side in (cell, own)]
-    return least[0], least[1]
+    return _first_least(cell), _first_least(own)
+
+
+def _first_least(met: Sequence[Approach]) -> Approach | None:
+    # Passes over the same place differ in their last digits.
+    least = min((side.distance for side in met), default=0.0) + 1e-9
+    return next((side for side in met if side.distance <= least), None)
 
 
 def _own_pairs(scene: CollisionScene) -> NDArray[np.bool_]:

@@ -40,9 +40,9 @@ def found(path: Path) -> dict[str, list[Finding]]:
 def test_the_example_is_clear_and_both_figures_are_told(cell) -> None:
     rules = found(cell())
     assert not {COLLISION, CLEARANCE, PART, "payload-exceeded"} & rules.keys()
-    to_cell, own = rules[NEAREST]
-    assert "clearance to the cell: 40.0 mm between bottle 1 and bottle 2" in to_cell.message
-    assert "between the arm's own parts" in own.message
+    nearest = {finding.message for finding in rules[NEAREST]}
+    assert "clearance to the cell: 40.0 mm between bottle 1 and bottle 2" in nearest
+    assert any(message.startswith("clearance between the arm's own parts") for message in nearest)
     run = flyby.emulate(flyby.read(PICK, cell=cell()))
     assert run.report.to_cell is not None and run.report.own is not None
     assert run.report.to_cell.distance == pytest.approx(0.04, abs=1e-4)
