@@ -15,7 +15,8 @@ b alone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,7 @@ class Ends:
         joint_acceleration: (M,) rad/s², likewise.
         joint_fraction, joint_acceleration_fraction: (M,), shares of the joints' own limits.
         override: (M,), what accelerations are multiplied by that the program does not state.
+        duration: (M,) s, programmed in place of speeds; inf where none is.
     """
 
     kind: IntArray
@@ -70,6 +72,7 @@ class Ends:
     joint_fraction: FloatArray
     joint_acceleration_fraction: FloatArray
     override: FloatArray
+    duration: FloatArray
 
 
 @dataclass
@@ -204,6 +207,36 @@ def make_segments(ends: Ends) -> Segments:
     return Segments(
         ends, shape, delta_q, position, angle, turn_a, turn_b, turn, delta_prescribed, length, scale
     )
+
+
+def in_time(segments: Segments, ramp: float | None) -> Segments:
+    """The segments with the speeds and accelerations that programmed times D stand for.
+
+    Over the way L, driven from stop to stop, that is a speed of L / ((1 − r) D), reached with
+    L / (r (1 − r) D²), as `flyby.core.motion.timing.programmed_durations` drives it.
+
+    Args:
+        segments: of a path.
+        ramp: r, the share of D over which a move accelerates, and again brakes; None for a mean
+            speed of L / D, with the accelerations of other moves.
+    """
+    ends = segments.ends
+    timed = np.flatnonzero(np.isfinite(ends.duration))
+    if not timed.size:
+        return segments
+    r, time = ramp or 0.0, ends.duration[timed]
+    found: dict[str, Any] = {}
+    ways = segments.length, np.abs(segments.delta_q).max(axis=1)
+    for name, way in zip(("", "joint_"), ways, strict=True):
+        # What does not go anywhere has no speed to reach.
+        speed = np.where(way[timed] > 0.0, way[timed] / ((1.0 - r) * time), np.inf)
+        rates = {"speed": speed}
+        if ramp is not None:
+            rates["acceleration"] = speed / (ramp * time)
+        for rate, values in rates.items():
+            found[name + rate] = getattr(ends, name + rate).copy()
+            found[name + rate][timed] = values
+    return replace(segments, ends=replace(ends, **found))
 
 
 def _circle(ends: Ends, arc: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray, FloatArray]:

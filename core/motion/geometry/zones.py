@@ -22,7 +22,7 @@ from ..model.rules import OrientationZone, Overlap, Pace, Space
 from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room, TimedBlend
 from .neighbour_zones import STILL, way_towards_neighbour
 from .reach import Part, Reach, least
-from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments
+from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments, in_time
 from .smaller_blends import acceleration_along, share_kept
 from .timed_blends import timed_blend
 from .zone_exits import Apart, first_exit, first_turn, tcp_apart, tool_apart
@@ -58,7 +58,7 @@ class ZonePlanner:
         moves: Sequence[int],
         limits: JointLimits,
     ) -> None:
-        self._segments = segments
+        self._segments = in_time(segments, model.duration.ramp)
         self._chains = chains
         self._model = model
         self._moves = moves

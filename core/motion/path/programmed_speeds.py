@@ -17,13 +17,12 @@ from .path import Route
 
 def programmed(speeds: Sequence[Speed]) -> dict[str, Any]:
     """What `Ends` have of the speeds of M moves: (M,) each, inf where none is; shares."""
-    # A time takes the place of the joints' speeds.
-    joint = [Speed() if speed.duration is not None else speed for speed in speeds]
     return {
         "speed": _or_inf([v.tcp for v in speeds]),
         "acceleration": _or_inf([v.tcp_acceleration for v in speeds]),
-        "joint_speed": _or_inf([v.joint for v in joint]),
-        "joint_acceleration": _or_inf([v.joint_acceleration for v in joint]),
+        "joint_speed": _or_inf([v.joint for v in speeds]),
+        "joint_acceleration": _or_inf([v.joint_acceleration for v in speeds]),
+        "duration": _or_inf([v.duration for v in speeds]),
         "joint_fraction": np.array([v.joint_fraction for v in speeds]),
         "joint_acceleration_fraction": np.array([v.joint_acceleration_fraction for v in speeds]),
         "override": np.array([v.acceleration_override for v in speeds]),

@@ -49,6 +49,7 @@ def ends(seed) -> Ends:
         FOLLOWS,
         SWIVELS,
         *rng.uniform(0.1, 2.0, (7, count)),
+        np.full(count, np.inf),
     )
 
 
@@ -101,6 +102,7 @@ def test_a_tool_that_follows_the_arc_turns_at_a_constant_rate_relative_to_the_ta
         np.array([True]),
         np.array([False]),
         *np.ones((7, 1)),
+        np.full(1, np.inf),
     )
     s = make_segments(e)
     np.testing.assert_allclose(s.turn_a[0], [0, 0, np.pi / 2], atol=1e-12)
@@ -125,6 +127,7 @@ def test_the_auxiliary_point_tells_which_way_the_tool_turns_round_a_half_circle(
             np.array([True]),
             np.array([False]),
             *np.ones((7, 1)),
+            np.full(1, np.inf),
         )
         s = make_segments(e)
         turns.append(s.turn_a[0, 2] + s.turn_b[0, 2])

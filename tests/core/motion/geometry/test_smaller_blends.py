@@ -14,7 +14,7 @@ from flyby.core.motion.geometry.smaller_blends import SHARP, SHORT
 from flyby.core.motion.gradients.derivatives import Derivatives
 from flyby.core.motion.model.blend import TANGENT_ARC
 from flyby.core.motion.model.motion_model import MotionModel
-from flyby.core.motion.model.rules import Overlap, Pace
+from flyby.core.motion.model.rules import DurationRule, Overlap, Pace
 from flyby.core.program.move import MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -69,6 +69,29 @@ def test_what_a_log_of_a_ur10e_showed(abb) -> None:
     speed = np.linalg.norm(np.gradient(place, t, axis=0), axis=1)
     middle = (t > 0.4 * t[-1]) & (t < 0.6 * t[-1])
     assert speed[middle].min() == pytest.approx(0.0541, rel=1e-2)
+
+
+@settings(max_examples=10, deadline=None)
+@given(time=st.floats(0.3, 4.0), stated=st.booleans(), ramp=st.sampled_from(["thirds", "halves"]))
+def test_a_time_stands_for_the_speed_and_acceleration_that_it_is_driven_with(
+    abb, time, stated, ramp
+) -> None:
+    rule = DurationRule(ramp)
+    program = corner(abb, 2.1, 0.4, 1.0)
+    first, last = program.moves
+    timed = Speed(tcp=0.01 if stated else None, duration=time)
+    speed = LEG / ((1 - rule.ramp) * time)
+    driven = Speed(tcp=speed, tcp_acceleration=speed / (rule.ramp * time))
+    model = replace(MODEL, duration=rule)
+    for swap in (False, True):
+        reaches = []
+        for said in (timed, driven):
+            moves = (first, replace(last, speed=said))
+            if swap:
+                moves = (replace(first, speed=said), last)
+            path = abb.controller(model).plan(Program(moves, start=abb.start))
+            reaches.append(path.corners.reach[0, POSITION])
+        np.testing.assert_allclose(reaches[0], reaches[1], rtol=1e-9)
 
 
 @pytest.mark.parametrize(("speed", "acceleration"), [(0.3, 2.0), (2.0, 0.5)])

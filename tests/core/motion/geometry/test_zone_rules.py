@@ -448,3 +448,17 @@ def test_an_override_of_accelerations_counts_for_joints_and_tcp(abb) -> None:
         for o in (1.0, 1.5)
     ]
     assert times[0] / times[1] == pytest.approx(np.sqrt(1.5), rel=1e-3)
+
+
+def test_a_zone_by_speed_before_a_timed_line_is_that_of_its_mean_speed(abb) -> None:
+    model = MotionModel(tcp_acceleration=2.0)
+    found = []
+    for said in (Speed(duration=2.0), Speed(tcp=0.5 * abb.leg)):
+        moves = (
+            MoveL(abb.target((1, 0, 0)), said, VendorZone(CNT, 0.5)),
+            MoveL(abb.target((1, 1, 0)), Speed(tcp=0.1)),
+        )
+        path = abb.controller(model).plan(Program(moves, start=abb.start))
+        found.append(path.corners.reach[0, POSITION])
+    assert found[0].min() > 0.0
+    np.testing.assert_allclose(found[0], found[1])
