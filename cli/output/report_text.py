@@ -69,7 +69,7 @@ def _print_losses(run: Run) -> None:
         return short_place(Path(main), span)
 
     whole = report.driven_time
-    if len(lines) < sum(move.driven for move in report.moves) or len(lines) > MOST_LINES:
+    if len(lines) < sum(line.times for line in lines) or len(lines) > MOST_LINES:
         longest = sorted(lines, key=lambda line: -line.total)
         rows = [line_row(line, place(line.span), whole) for line in longest[:MOST_LINES]]
         if rest := longest[MOST_LINES:]:
@@ -84,7 +84,7 @@ def _print_losses(run: Run) -> None:
 def _further(lines: Sequence[LineReport], whole: float) -> tuple[str, ...]:
     """The row of all lines that have none of their own."""
     total = sum(line.total for line in lines)
-    times = sum(len(line.moves) for line in lines)
+    times = sum(line.times for line in lines)
     share = f"{100 * total / whole:.0f}" if whole else ""
     what = counted(lines, "further line")
     return ("", what, "", f"×{times}", "", "", f"{total:.3f}", share, "")
@@ -209,6 +209,7 @@ def _line_json(line: LineReport) -> dict[str, Any]:
         **place_json(line.span),
         "kind": line.kind,
         "target": line.target,
+        "times": line.times,
         "moves": list(line.moves),
         "total_s": line.total,
         "duration_s": line.time,

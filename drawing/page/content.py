@@ -78,12 +78,14 @@ class PageTable:
         columns: of it.
         rows: of it.
         note: a sentence above it.
+        track: index of the track beside which alone it is shown; -1 for all.
     """
 
     title: str
     columns: Sequence[PageColumn]
     rows: Sequence[PageRow]
     note: str = ""
+    track: int = -1
 
 
 @dataclass(frozen=True)
@@ -93,10 +95,12 @@ class PageShare:
     Args:
         name: such as ``motion``.
         seconds: of it.
+        track: index of the track beside which alone it is shown; -1 for all.
     """
 
     name: str
     seconds: float
+    track: int = -1
 
 
 @dataclass(frozen=True)
@@ -231,7 +235,7 @@ class Page:
         facts: figures at the top, by name.
         shares: what the cycle goes into.
         arms: robots with their cells.
-        tracks: motions; the last one that is no ghost is shown first.
+        tracks: motions.
         sources: files.
         tables: below the source.
         charts: plots, by their order.
@@ -241,6 +245,7 @@ class Page:
         together: times at which tracks pass the same waypoint, s, a row a waypoint and a column a
             track; None where tracks run by the clock alone.
         notes: sentences that the reader should not miss.
+        chosen: index of the track that is shown first; -1 for the last one that is no ghost.
         made_by: the program's name and version.
     """
 
@@ -258,4 +263,5 @@ class Page:
     gantt: Sequence[PageBars] = ()
     together: Quantised | None = None
     notes: Sequence[str] = ()
+    chosen: int = -1
     made_by: str = ""

@@ -70,7 +70,7 @@ class PageMove:
         line: from 1; 0 where it has none.
         tool: index of the tool among the arm's.
         node: that carries its work object: the path is drawn there.
-        begin, end: s, when it is driven, waits at its end included; both None where it is not.
+        begin, end: s, when it is driven, waits at its end left out; both None where it is not.
         fault: whether it cannot be driven.
     """
 

@@ -65,10 +65,7 @@ def difference_page(found: StateDifference) -> Page:
         _differences(found, draft),
         _faults(found),
         _files(found),
-        *(
-            moves_table(run.report, draft.sources, k, _title(draft, k))
-            for k, run in enumerate(shown)
-        ),
+        *(moves_table(run.report, draft.sources, k) for k, run in enumerate(shown)),
     ]
     times = found.routines[0].times if found.routines else (None, None)
     told = {} if None in times else {"cycle time": f"{times[0]:.3f} → {times[1]:.3f} s"}
@@ -83,19 +80,19 @@ def difference_page(found: StateDifference) -> Page:
         [table for table in tables if table.rows],
         CHARTS,
         notes=_notes(found),
+        chosen=_after(draft, next(iter(tracks), "")),
         made_by=made_by(),
     )
+
+
+def _after(draft: PageDraft, routine: str) -> int:
+    """The last track of a routine."""
+    return max((k for k, one in enumerate(draft.tracks) if one.group == routine), default=-1)
 
 
 def _notes(found: StateDifference) -> tuple[str, ...]:
     same = () if found.differs else ("The two do not differ.",)
     return (*same, f"Nothing is driven: {found.undriven}.") if found.undriven else same
-
-
-def _title(draft: PageDraft, track: int) -> str:
-    made = draft.tracks[track]
-    name = f" of {made.group}" if len({one.group for one in draft.tracks}) > 1 else ""
-    return f"Moves {made.name}{name}".strip()
 
 
 def _driven(found: StateDifference) -> Iterator[tuple[str, list[Run]]]:

@@ -50,11 +50,8 @@ def front_page(made: ProgramFront) -> Page:
             draft.prove(track, point.certificate, run, setup.surroundings(programs[0]))
     tables = [
         _table(made, tracks),
-        *time_tables(runs[-1], draft.sources, len(runs) - 1),
-        *(
-            moves_table(run.report, draft.sources, k, f"Moves, {name}")
-            for k, (run, name) in enumerate(zip(runs, shown, strict=True))
-        ),
+        *(table for k, run in enumerate(runs) for table in time_tables(run, draft.sources, k)),
+        *(moves_table(run.report, draft.sources, k) for k, run in enumerate(runs)),
     ]
     return Page(
         f"{programs[0].name} on {setup.robot.name}",

@@ -61,19 +61,19 @@ _LINES = (
 )
 
 
-def page_shares(program: Program, report: Report) -> list[PageShare]:
-    """What the whole time goes into."""
-    spent = shares(program, report)
-    if spent.passes:
-        parts = {"motion": spent.motion, "waits": spent.waiting, "devices": spent.devices}
+def page_shares(program: Program, report: Report, track: int = -1) -> list[PageShare]:
+    """What the whole time goes into; of a track among several, beside which it is shown."""
+    cycle = shares(program, report)
+    if cycle.passes:
+        parts = {"motion": cycle.motion, "waits": cycle.waiting, "devices": cycle.devices}
     else:
         parts = {
             "motion": report.moving,
             "settling": report.settling,
-            "waits": spent.waiting,
-            "devices": spent.devices,
+            "waits": cycle.waiting,
+            "devices": cycle.devices,
         }
-    return [PageShare(name, seconds) for name, seconds in parts.items() if seconds > 0.0]
+    return [PageShare(name, spent, track) for name, spent in parts.items() if spent > 0.0]
 
 
 def page_moves(
@@ -93,14 +93,14 @@ def page_moves(
 
 
 def span_of(move: MoveReport) -> tuple[float | None, float | None]:
-    """When a move begins and ends, its wait included; Nones where it is not driven."""
+    """When a move begins and ends, settled; Nones where it is not driven."""
     if not move.driven:
         return None, None
-    return move.begin, move.begin + move.time + move.settling + move.wait
+    return move.begin, move.begin + move.time + move.settling
 
 
-def moves_table(report: Report, sources: SourceList, track: int, title: str = "Moves") -> PageTable:
-    """A row a move."""
+def moves_table(report: Report, sources: SourceList, track: int) -> PageTable:
+    """A row a move; shown beside its track."""
     rows = []
     for move in report.moves:
         source, line = sources.place(track, move.span)
@@ -125,11 +125,11 @@ def moves_table(report: Report, sources: SourceList, track: int, title: str = "M
             cells = (*head, None, None, None, None, None, None, "", why)
         t = move.begin if move.driven else None
         rows.append(PageRow(cells, level, track, t, move.number - 1, source, line))
-    return PageTable(title, MOVES, rows)
+    return PageTable("Moves", MOVES, rows, track=track)
 
 
 def time_tables(run: Run, sources: SourceList, track: int) -> list[PageTable]:
-    """What the time is lost to, and what each line takes.
+    """What the time is lost to, and what each line takes; shown beside their track.
 
     Args:
         run: the run.
@@ -161,7 +161,7 @@ def _causes(run: Run, sources: SourceList, track: int) -> list[PageTable]:
         t = first.begin if first.driven and not line else None
         rows.append(PageRow(cells, "", track, t, None, source, line))
     note = run.first_to_change() or "Nothing holds the program back by itself."
-    return [PageTable("Causes", _CAUSES, rows, note)]
+    return [PageTable("Causes", _CAUSES, rows, note, track)]
 
 
 def _lines(run: Run, sources: SourceList, track: int) -> PageTable:
@@ -176,16 +176,16 @@ def _lines(run: Run, sources: SourceList, track: int) -> PageTable:
             float(line) if line else None,
             f"{one.kind} {one.target}",
             one.total,
-            float(len(one.moves)),
+            float(one.times),
             100.0 * one.total / whole,
-            one.time,
+            one.time or None,
             one.wait or None,
             one.settling or None,
             "" if limit is None else f"{limit.name} ({100 * limit.share:.0f} %)",
         )
-        t = run.report.moves[one.moves[0] - 1].begin
+        t = run.report.moves[one.moves[0] - 1].begin if one.moves and not line else None
         rows.append(PageRow(cells, "", track, t, None, source, line))
-    return PageTable("Lines", _LINES, rows)
+    return PageTable("Lines", _LINES, rows, track=track)
 
 
 def faults_table(report: Report, sources: SourceList, track: int) -> PageTable | None:

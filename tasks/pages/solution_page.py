@@ -73,14 +73,14 @@ def solution_page(made: Solution, cell: Cell | None = None) -> Page:
     tables = [
         *([changes_table(made, runs, draft)] if made.changed else []),
         _figures(made),
-        *(table for k, run in enumerate(runs) for table in _of_run(run, k, draft, len(runs))),
+        *(table for k, run in enumerate(runs) for table in _of_run(run, k, draft)),
         *notes_rows(made.notes, last.report, draft.sources, len(runs) - 1),
     ]
     return Page(
         f"{made.program.name} on {last.robot.name}",
         _kind(made),
         _facts(made),
-        page_shares(last.program, last.report),
+        [s for k, run in enumerate(runs) for s in page_shares(run.program, run.report, k)],
         draft.arms,
         draft.tracks,
         draft.files(),
@@ -117,11 +117,9 @@ def _figures(made: Solution) -> PageTable:
     return PageTable("Figures", _FIGURES, rows)
 
 
-def _of_run(run: Run, track: int, draft: PageDraft, count: int) -> Iterator[PageTable]:
-    which = "" if count == 1 else f" {(BEFORE, AFTER)[track]}"
-    if track == count - 1:
-        yield from time_tables(run, draft.sources, track)
-    yield moves_table(run.report, draft.sources, track, f"Moves{which}")
+def _of_run(run: Run, track: int, draft: PageDraft) -> Iterator[PageTable]:
+    yield from time_tables(run, draft.sources, track)
+    yield moves_table(run.report, draft.sources, track)
 
 
 def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> PageTable:

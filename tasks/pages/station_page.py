@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 from pathlib import PurePath
@@ -10,6 +10,7 @@ from pathlib import PurePath
 import numpy as np
 
 from ...core.arrays import FloatArray, IntArray
+from ...core.display import counted
 from ...core.driving.driven_program import DrivenProgram
 from ...core.errors import Span
 from ...core.program.signal import Meet
@@ -32,7 +33,7 @@ from ...drawing.page.track_content import PageChannel, PageChart, PageFlag, Page
 from ...drawing.signals import signals_on
 from ..results.runs import Run
 from ..results.stations import DrivenStation
-from .program_tables import time_tables
+from .program_tables import page_shares, time_tables
 from .run_page import PageDraft, made_by
 
 MOST_TIMES, EVERY = 300, 0.05
@@ -100,7 +101,7 @@ class _StationPage:
             "station" if made.station.file is None else made.station.file.parent.name,
             "station",
             self._facts(),
-            self._shares(),
+            list(self._shares()),
             draft.arms,
             draft.tracks,
             draft.files(),
@@ -108,6 +109,7 @@ class _StationPage:
             charts if made.clearances else CHARTS,
             gantt=[*self._robots(), *self._signals()],
             notes=made.findings(),
+            chosen=list(made.station.members).index(made.bottleneck),
             made_by=made_by(),
         )
 
@@ -160,20 +162,29 @@ class _StationPage:
         facts = {"station time": f"{made.duration:.3f} s" if ends else "never ends"}
         if ends:
             facts["ends last"] = made.bottleneck
-        for pair in made.clearances:
-            kept = f"{1e3 * made.station.clearance:g} mm" if pair.in_time.proven else "not"
-            near = f"{1e3 * pair.least:.1f} mm met" if pair.least > 0.0 else "touch"
-            facts[" – ".join(pair.robots)] = f"{near}, {kept} proven in time"
+        if made.clearances:
+            facts["least met"] = self._least()
+            proven = sum(pair.in_time.proven for pair in made.clearances)
+            kept = f"{1e3 * made.station.clearance:g} mm"
+            if proven < len(made.clearances):
+                kept += f" for {proven} of {counted(made.clearances, 'pair')}"
+            facts["proven in time"] = kept if proven else "nothing"
         return facts
 
-    def _shares(self) -> Sequence[PageShare]:
-        """What the time of the robot that ends last goes into."""
-        made = self.made
-        schedule = made.run.schedules[made.bottleneck]
-        waits = sum(min(s.end, self.last) - s.begin for s in schedule.waits)
-        drives = made.station.members[made.bottleneck].run.duration
-        parts = {f"{made.bottleneck} drives": drives, "waits": float(waits)}
-        return [PageShare(name, seconds) for name, seconds in parts.items() if seconds > 0.0]
+    def _least(self) -> str:
+        """The pair that comes nearest to each other, and how near."""
+        pair = min(self.made.clearances, key=lambda one: one.least)
+        near = f"{1e3 * pair.least:.1f} mm, " if pair.least > 0.0 else "touch: "
+        return near + " – ".join(pair.robots)
+
+    def _shares(self) -> Iterator[PageShare]:
+        """What the time of each robot goes into."""
+        for index, schedule in enumerate(self.made.run.schedules.values()):
+            run = self.runs[index]
+            waits = sum(min(s.end, self.last) - s.begin for s in schedule.waits)
+            yield from page_shares(run.program, run.report, index)
+            if waits > 0.0:
+                yield PageShare("waits for others", float(waits), index)
 
     # Rows over time
 
@@ -239,14 +250,13 @@ class _StationPage:
                 saved.append(PageRow(changed, "", index, None, None, source, line))
             note = "What could go or come earlier; the station is as much quicker."
             yield PageTable("Interlocks", _SAVINGS, saved, note)
-        last = names.index(made.bottleneck)
-        for table in time_tables(self.runs[last], self.draft.sources, last):
-            moved = [
-                row if row.t is None else replace(row, t=self.clocks[last].last_at(row.t))
-                for row in table.rows
-            ]
-            title = f"{table.title} of {made.bottleneck}"
-            yield replace(table, title=title, rows=moved)
+        for index, (run, clock) in enumerate(zip(self.runs, self.clocks, strict=True)):
+            for table in time_tables(run, self.draft.sources, index):
+                rows = [
+                    row if row.t is None else replace(row, t=clock.last_at(row.t))
+                    for row in table.rows
+                ]
+                yield replace(table, rows=rows)
         findings = [PageRow((text,), "error") for text in made.findings()]
         findings += [PageRow((str(note),), "warning") for note in made.notes]
         if findings:

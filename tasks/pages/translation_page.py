@@ -52,6 +52,7 @@ def translation_page(
         arm = draft.arms[1]
         world = replace(arm.nodes[0], place=place.matrix())
         draft.arms[1] = replace(arm, nodes=[world, *arm.nodes[1:]])
+    runs = [before, after]
     old, new = before.duration, after.duration
     lost = []
     for note in made.losses:
@@ -60,9 +61,8 @@ def translation_page(
         lost.append(PageRow((at, note.message), "warning", 0, None, note.move, source, line))
     tables = [
         *([PageTable("Losses", _LOSSES, lost)] if lost else []),
-        *time_tables(after, draft.sources, 1),
-        moves_table(before.report, draft.sources, 0, "Moves before"),
-        moves_table(after.report, draft.sources, 1, "Moves after"),
+        *(table for k, run in enumerate(runs) for table in time_tables(run, draft.sources, k)),
+        *(moves_table(run.report, draft.sources, k) for k, run in enumerate(runs)),
     ]
     robots = [setup_of_program(p).robot.name for p in (made.original, made.program)]
     return Page(
@@ -73,13 +73,13 @@ def translation_page(
             "change": f"{100 * (new / old - 1):+.1f} %",
             "not carried over": str(len(made.losses)),
         },
-        page_shares(after.program, after.report),
+        [s for k, run in enumerate(runs) for s in page_shares(run.program, run.report, k)],
         draft.arms,
         draft.tracks,
         draft.files(),
         tables,
         CHARTS,
-        together=meeting_times([before, after]),
+        together=meeting_times(runs),
         notes=fault_notes(after),
         made_by=made_by(),
     )

@@ -59,14 +59,14 @@ class TimeCause:
 
 @dataclass(frozen=True)
 class _Account:
-    """Times by cause and move."""
+    """s by cause, move and line."""
 
-    spent: dict[str, dict[int, float]]
+    spent: dict[str, dict[tuple[int, Span | None], float]]
 
-    def add(self, name: str, move: int, time: float) -> None:
+    def add(self, name: str, move: int, span: Span | None, time: float) -> None:
         if time > 0.0:
-            by_move = self.spent.setdefault(name, {})
-            by_move[move] = by_move.get(move, 0.0) + time
+            by_place = self.spent.setdefault(name, {})
+            by_place[move, span] = by_place.get((move, span), 0.0) + time
 
 
 def causes_of(
@@ -84,15 +84,12 @@ def causes_of(
     for part in driven.parts:
         for segment, by_name in enumerate(limit_seconds(part.run, names)):
             for name, time in by_name.items():
-                account.add(name, part.first + part.run.path.route.moves[segment] + 1, time)
-    limits = {
-        name: by_move
-        for name, by_move in account.spent.items()
-        if sum(by_move.values()) >= SMALLEST * report.driven_time
-    }
+                index = part.first + part.run.path.route.moves[segment]
+                account.add(name, index + 1, driven.program.moves[index].statement, time)
     found = [
-        _cause(driven.program, name, by_move, _gain(controller, driven.parts, name))
-        for name, by_move in limits.items()
+        _cause(name, by_place, _gain(controller, driven.parts, name))
+        for name, by_place in account.spent.items()
+        if sum(by_place.values()) >= SMALLEST * report.driven_time
     ]
     found += [*_rests(driven.program, report), *_stops(controller, driven, zone)]
     return tuple(sorted(found, key=lambda cause: -(cause.gain or 0.0)))
@@ -104,13 +101,15 @@ def _gain(controller: Controller, parts: Sequence[DrivenPart], name: str) -> flo
     return sum(known) if known else None
 
 
-def _cause(program: Program, name: str, by_move: dict[int, float], gain: float | None) -> TimeCause:
+def _cause(
+    name: str, by_place: dict[tuple[int, Span | None], float], gain: float | None
+) -> TimeCause:
     by_line: dict[Span | None, float] = {}
-    for move, time in by_move.items():
-        span = program.moves[move - 1].statement
+    for (_, span), time in by_place.items():
         by_line[span] = by_line.get(span, 0.0) + time
     most = max(by_line, key=lambda span: by_line[span])
-    return TimeCause(name, sum(by_move.values()), gain, tuple(sorted(by_move)), most)
+    moves = sorted({move for move, _ in by_place})
+    return TimeCause(name, sum(by_place.values()), gain, tuple(moves), most)
 
 
 def _rests(program: Program, report: Report) -> Iterator[TimeCause]:
@@ -120,11 +119,12 @@ def _rests(program: Program, report: Report) -> Iterator[TimeCause]:
     for wait, done in standing(program):
         move = max(done, first)
         if report.moves[move - 1].driven:
-            account.add(DEVICES if wait.device else WAITS, move, wait.duration)
+            span = wait.span or report.moves[move - 1].span
+            account.add(DEVICES if wait.device else WAITS, move, span, wait.duration)
     for row in report.moves:
-        account.add(SETTLING, row.number, row.settling)
-    for name, by_move in account.spent.items():
-        yield _cause(program, name, by_move, sum(by_move.values()))
+        account.add(SETTLING, row.number, row.span, row.settling)
+    for name, by_place in account.spent.items():
+        yield _cause(name, by_place, sum(by_place.values()))
 
 
 def _stops(controller: Controller, driven: DrivenProgram, zone: Zone) -> Iterator[TimeCause]:

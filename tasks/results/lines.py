@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ...core.errors import Span
 from ...core.motion.emulator.binding_limits import LimitShare, shares_of
-from .report import MoveReport, seconds, target_text
+from ...core.program.move import Wait
+from ...core.program.program import Program
+from .report import MoveReport, Report, seconds, target_text
+from .shares import standing
 
 COLUMNS = (
     ("line", "right"),
@@ -22,17 +24,24 @@ COLUMNS = (
 )
 
 
+WAIT, DEVICE = "wait", "device"
+_SAME = 1e-9
+"""s."""
+
+
 @dataclass(frozen=True, slots=True)
 class LineReport:
-    """All that one line of the source drives.
+    """What one line of the source drives and waits.
 
     Args:
-        span: of its first move; None where a move has no line, and is one by itself.
-        kind: ``MoveJ``, ``MoveL`` or ``MoveC``.
-        target: where it goes, in words; ``several`` if it goes elsewhere each time.
-        moves: their numbers, from 1.
+        span: of it; None where a move has no line, and is one by itself.
+        kind: ``MoveJ``, ``MoveL`` or ``MoveC``; ``wait`` or ``device`` of a line that only waits.
+        target: where it goes, in words, or how long it waits; ``several`` if it is another one
+            each time.
+        times: how often it runs.
+        moves: their numbers, from 1; of a line that only waits, those that it stands behind.
         time: s of motion of all of them.
-        wait: s of programmed standing still.
+        wait: s of standing still.
         settling: s, see `MoveReport`.
         limits: what holds the speed down, the longest first.
     """
@@ -40,6 +49,7 @@ class LineReport:
     span: Span | None
     kind: str
     target: str
+    times: int
     moves: tuple[int, ...]
     time: float
     wait: float
@@ -52,30 +62,89 @@ class LineReport:
         return self.time + self.wait + self.settling
 
 
-def lines_of(moves: Sequence[MoveReport]) -> tuple[LineReport, ...]:
-    """The lines that drive, in the order in which they do so first."""
-    by_line: dict[object, list[MoveReport]] = {}
-    for move in moves:
-        if move.driven:
-            at = None if move.span is None else (move.span.file, move.span.line)
-            by_line.setdefault(at or move.number, []).append(move)
-    return tuple(map(_line, by_line.values()))
+@dataclass(slots=True)
+class _Line:
+    """What stands in one line: moves, waits with the number of the move before each, and s that
+    the moves wait without a line of their own."""
+
+    span: Span | None
+    moves: list[MoveReport] = field(default_factory=list)
+    waits: list[tuple[Wait, int]] = field(default_factory=list)
+    unnamed: float = 0.0
 
 
-def _line(moves: Sequence[MoveReport]) -> LineReport:
+def lines_of(program: Program, report: Report) -> tuple[LineReport, ...]:
+    """The lines that drive or wait, in the order in which they do so first."""
+    waits = _waits(program, report)
+    lines: dict[object, _Line] = {}
+    for wait in waits.get(0, ()):
+        _at(lines, wait.span, 0).waits.append((wait, 0))
+    for move in report.moves:
+        if not move.driven:
+            continue
+        own = waits.get(move.number, ())
+        line = _at(lines, move.span, move.number)
+        line.moves.append(move)
+        line.unnamed += move.wait - sum(wait.duration for wait in own)
+        for wait in own:
+            _at(lines, wait.span, move.number).waits.append((wait, move.number))
+    return tuple(map(_line, lines.values()))
+
+
+def _at(lines: dict[object, _Line], span: Span | None, number: int) -> _Line:
+    key = number if span is None else (span.file, span.line)
+    return lines.setdefault(key, _Line(span))
+
+
+def _waits(program: Program, report: Report) -> dict[int, list[Wait]]:
+    """Waits with a line, by the number of the driven move that they stand behind; 0 for those
+    before the first move of a part."""
+    spent = {move.number: move.wait for move in report.moves if move.driven}
+    spent[0] = report.first_wait
+    found: dict[int, list[Wait]] = {}
+    for wait, done in standing(program):
+        number = _behind(done, report)
+        if number is not None and wait.span is not None and wait.duration > 0.0:
+            found.setdefault(number, []).append(wait)
+    return {
+        number: own
+        for number, own in found.items()
+        if sum(wait.duration for wait in own) <= spent.get(number, 0.0) + _SAME
+    }
+
+
+def _behind(done: int, report: Report) -> int | None:
+    """The driven move that what comes behind a move stands behind; 0 where it is before a part's
+    first, None where nothing is driven."""
+    for first, last in report.parts:
+        if first - 1 <= done <= last:
+            driven = [move.number for move in report.moves[first - 1 : done] if move.driven]
+            return driven[-1] if driven else 0
+    return None
+
+
+def _line(line: _Line) -> LineReport:
     spent: dict[str, float] = {}
-    for move in moves:
+    for move in line.moves:
         for limit in move.limits:
             spent[limit.name] = spent.get(limit.name, 0.0) + limit.share * move.time
-    targets = {target_text(move) for move in moves}
+    if line.moves:
+        kind = line.moves[0].kind
+        told = {target_text(move) for move in line.moves}
+        numbers = [move.number for move in line.moves]
+    else:
+        kind = DEVICE if line.waits[0][0].device else WAIT
+        told = {f"{wait.duration:.3g} s" for wait, _ in line.waits}
+        numbers = [number for _, number in line.waits if number]
     return LineReport(
-        span=moves[0].span,
-        kind=moves[0].kind,
-        target=targets.pop() if len(targets) == 1 else "several",
-        moves=tuple(move.number for move in moves),
-        time=sum(move.time for move in moves),
-        wait=sum(move.wait for move in moves),
-        settling=sum(move.settling for move in moves),
+        span=line.span,
+        kind=kind,
+        target=told.pop() if len(told) == 1 else "several",
+        times=len(line.moves or line.waits),
+        moves=tuple(numbers),
+        time=sum(move.time for move in line.moves),
+        wait=line.unnamed + sum(wait.duration for wait, _ in line.waits),
+        settling=sum(move.settling for move in line.moves),
         limits=shares_of(spent),
     )
 
@@ -93,8 +162,8 @@ def line_row(line: LineReport, place: str, whole: float) -> tuple[str, ...]:
         place,
         line.kind,
         line.target,
-        f"×{len(line.moves)}",
-        f"{line.time:.3f}",
+        f"×{line.times}",
+        seconds(line.time),
         seconds(line.wait + line.settling),
         f"{line.total:.3f}",
         f"{100 * line.total / whole:.0f}" if whole else "",

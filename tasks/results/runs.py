@@ -97,8 +97,8 @@ class Run(DrivenProgram):
 
     @property
     def lines(self) -> tuple[LineReport, ...]:
-        """What each line of the source takes, however often it runs."""
-        return lines_of(self.moves)
+        """What each line of the source drives and waits, however often it runs."""
+        return lines_of(self.program, self.report)
 
     @cached_property
     def causes(self) -> tuple[TimeCause, ...]:
@@ -120,7 +120,7 @@ class Run(DrivenProgram):
         Raises:
             FlybyError: nobody knows who drives the program.
         """
-        often = {line.span: len(line.moves) for line in self.lines if line.span is not None}
+        often = {line.span: line.times for line in self.lines if line.span is not None}
         return first_to_change(self.causes, often, self.report.driven_time, place)
 
     def picture(self, kind: str = "svg") -> bytes:

@@ -32,13 +32,39 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> flyby.Run:
 
 def test_a_line_in_a_loop_is_one_row_with_its_total(run: flyby.Run) -> None:
     lines = {line.span.line: line for line in run.lines if line.span is not None}
-    assert sorted(lines) == [6, 8]
+    assert sorted(lines) == [6, 7, 8]
     slow = lines[6]
-    assert len(slow.moves) == 12 and slow.target != "several"
-    assert slow.wait == pytest.approx(6.0)
+    assert slow.times == len(slow.moves) == 12 and slow.target != "several"
+    assert slow.wait == 0.0
     assert slow.time == pytest.approx(sum(run.moves[n - 1].time for n in slow.moves))
     assert sum(line.total for line in run.lines) == pytest.approx(run.duration)
     assert slow.limits[0].name == "programmed TCP speed"
+
+
+def test_a_wait_has_a_line_of_its_own(run: flyby.Run) -> None:
+    waits = next(line for line in run.lines if line.span is not None and line.span.line == 7)
+    assert (waits.kind, waits.target, waits.times) == ("wait", "0.5 s", 12)
+    assert waits.wait == waits.total == pytest.approx(6.0)
+    told = {cause.name: cause.span for cause in run.causes}["waits of the program"]
+    assert told is not None and told.line == 7
+
+
+def test_waits_before_all_and_behind_faults(tmp_path: Path) -> None:
+    """What nobody waits for is in no line; what two lines wait at one stop is in both."""
+    path = tmp_path / "waits.mod"
+    text = LOOP.replace("    MoveJ p1", "    WaitTime 0.25;\n    MoveJ p1")
+    text = text.replace("FOR i FROM 1 TO 12", "FOR i FROM 1 TO 2")
+    text = text.replace("WaitTime 0.5;", "WaitTime 0.5; WaitTime 0.125;\n      WaitTime 1;")
+    path.write_text(text)
+    run = flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
+    waits = {line.span.line: line.wait for line in run.lines if line.span and line.wait}
+    assert waits == pytest.approx({4: 0.25, 8: 1.25, 9: 2.0})
+    assert sum(line.total for line in run.lines) == pytest.approx(run.duration)
+    moves = [f"MoveL Offs(p1,{x},0,0), v500, fine, tool0;" for x in (9000, 50, 0)]
+    path.write_text(text.replace("ENDFOR", "ENDFOR\n" + "\nWaitTime 3;\n".join(moves)))
+    run = flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
+    assert run.faults
+    assert sum(line.total for line in run.lines) == pytest.approx(run.report.driven_time)
 
 
 def test_causes_sum_up_to_the_time_and_say_what_they_give_back(run: flyby.Run) -> None:

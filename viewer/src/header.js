@@ -2,7 +2,9 @@
 
 import { h, icon } from "./dom.js";
 
-const SHARES = { motion: "var(--accent)", settling: "#56b4e9", waits: "#d55e00", devices: "#e69f00" };
+const SHARES = { motion: "var(--accent)", settling: "#56b4e9", waits: "#d55e00", devices: "#e69f00", "waits for others": "#cc79a7" };
+
+const BUTTONS = 3; // tracks of a group that have one each
 
 export function header(session, host, { theme, help }) {
   const { page } = session;
@@ -12,7 +14,7 @@ export function header(session, host, { theme, help }) {
   const pieces = [
     h("div", { class: "title" }, h("small", {}, page.kind), h("h1", { title: page.title }, page.title)),
     h("div", { class: "facts" }, ...facts),
-    shareBar(page.shares ?? []),
+    shareBar(session),
     choice(session),
     h("div", { class: "tools" },
       h("button", { title: "light or dark (t)", onclick: theme }, icon("theme")),
@@ -22,35 +24,48 @@ export function header(session, host, { theme, help }) {
   host.append(...pieces.filter(Boolean));
 }
 
-function shareBar(shares) {
-  const total = shares.reduce((sum, share) => sum + share.seconds, 0);
-  if (!total) return null;
-  const bar = h("div", { class: "stack" });
-  const names = h("div", { class: "names" });
-  for (const { name, seconds } of shares) {
-    const part = h("i", { title: `${name}: ${seconds.toFixed(3)} s` });
-    part.style.flexGrow = String(seconds);
-    part.style.background = SHARES[name] ?? "#888";
-    bar.append(part);
-    const label = h("span", {}, h("i", {}), `${name} `, h("b", {}, `${seconds.toFixed(2)} s`));
-    label.firstChild.style.background = SHARES[name] ?? "#888";
-    names.append(label);
-  }
-  return h("div", { class: "shares" }, bar, names);
+/** What the active track's time goes into. */
+function shareBar(session) {
+  const all = session.page.shares ?? [];
+  if (!all.length) return null;
+  const host = h("div", { class: "shares" });
+  const fill = () => {
+    const shares = all.filter((share) => session.beside(share));
+    const bar = h("div", { class: "stack" });
+    const names = h("div", { class: "names" });
+    for (const { name, seconds } of shares) {
+      const part = h("i");
+      part.style.flexGrow = String(seconds);
+      part.style.background = SHARES[name] ?? "#888";
+      bar.append(part);
+      const label = h("span", {}, h("i", {}), `${name} `, h("b", {}, `${seconds.toFixed(2)} s`));
+      label.firstChild.style.background = SHARES[name] ?? "#888";
+      names.append(label);
+    }
+    host.title = shares.map(({ name, seconds }) => `${name}: ${seconds.toFixed(3)} s`).join("\n");
+    host.replaceChildren(bar, names);
+  };
+  session.on("track", fill);
+  fill();
+  return host;
 }
 
 /** Which track is the solid one, and how two run together. */
 function choice(session) {
-  const groups = [...new Set(session.tracks.map((track) => track.group))];
-  const many = groups.length > 1 || session.tracks.length > 3;
   if (session.tracks.length < 2) return null;
+  // Buttons for the few of a group, a list of the groups; a list of all where a group has many.
+  const groups = new Map();
+  for (const track of session.tracks) groups.set(track.group, [...(groups.get(track.group) ?? []), track]);
+  const few = [...groups.values()].every((group) => group.length <= BUTTONS);
+  const listed = few ? [...groups.values()].map((group) => group.filter((track) => !track.ghost).at(-1) ?? group.at(-1)) : session.tracks;
   const list = h("select", { "aria-label": "which motion", onchange: () => session.choose(+list.value) });
-  session.tracks.forEach((track, k) => list.append(h("option", { value: k }, `${track.group} ${track.name}`.trim())));
-  list.hidden = !many;
+  for (const track of listed) list.append(h("option", { value: track.index }, few && groups.size > 1 ? track.group : `${track.group} ${track.name}`.trim()));
+  list.hidden = listed.length < 2;
   const buttons = h("div", { class: "segments" });
   const mark = () => {
-    list.value = String(session.active);
-    const group = session.tracks.filter((track) => track.group === session.track.group && track.name);
+    const own = listed.find((track) => track === session.track) ?? listed.find((track) => track.group === session.track.group);
+    list.value = String(own.index);
+    const group = few ? groups.get(session.track.group).filter((track) => track.name) : [];
     buttons.replaceChildren(
       ...group.map((track) =>
         h(
@@ -61,7 +76,7 @@ function choice(session) {
         ),
       ),
     );
-    buttons.hidden = group.length > 3 || group.length < 2;
+    buttons.hidden = group.length < 2;
   };
   session.on("track", mark);
   mark();

@@ -41,6 +41,7 @@ const AMOUNTS = [
   { wide: 3000, near: 900, zones: 40 },
   { wide: 400, near: 240, zones: 12 },
 ];
+const MANY_FLAGS = 30; // from which on they are drawn smaller
 const FLAGS = { wait: 0xd55e00, device: 0xe69f00, statement: 0x0072b2, event: 0x009e73 };
 
 export class PathView {
@@ -268,7 +269,7 @@ export class PathView {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(xyz, 3));
     geometry.setAttribute("color", new BufferAttribute(colours, 3));
-    const dots = new Points(geometry, new PointsMaterial({ vertexColors: true, size: 9, sizeAttenuation: false, depthTest: false }));
+    const dots = new Points(geometry, new PointsMaterial({ vertexColors: true, size: flags.length > MANY_FLAGS ? 6 : 9, sizeAttenuation: false, depthTest: false }));
     dots.renderOrder = 7;
     dots.frustumCulled = false;
     this.put("flags", 0, dots);

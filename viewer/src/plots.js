@@ -27,8 +27,9 @@ export class PlotPane {
     this.head = h("i", { class: "playhead" });
     this.bandHost.append(this.band, this.head);
     if (this.gantt) this.bandHost.style.height = `${this.gantt.height}px`;
+    this.row = h("div", { class: "bandrow" }, this.bandHost);
     this.plots = [];
-    host.append(h("div", { class: "bandrow" }, this.legend, this.bandHost));
+    host.append(this.legend, this.row);
     if (this.charts.length) {
       this.slots = [this.slot(0), this.slot(Math.min(2, this.charts.length - 1))];
       if (this.charts.length < 2 || this.gantt) this.slots.pop().root.remove();
@@ -236,7 +237,7 @@ export class PlotPane {
 
   putBandHead() {
     const x = this.placeOf(this.gantt ? this.session.t : this.session.timeOf(this.session.track));
-    this.head.hidden = !(x >= this.left - 1 && x <= this.bandHost.clientWidth - RIGHT + 1);
+    this.head.hidden = !(x >= this.left - 1 && x <= this.band.clientWidth - RIGHT + 1);
     this.head.style.transform = `translateX(${x}px)`;
   }
 
@@ -279,7 +280,7 @@ export class PlotPane {
 
   drawBand() {
     const { track } = this.session;
-    const width = this.bandHost.clientWidth;
+    const width = this.row.offsetWidth; // a bar to scroll with lies in the margin
     const height = this.bandHost.clientHeight;
     if (!track || !width || !height) return;
     const scale = devicePixelRatio;

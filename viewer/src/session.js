@@ -9,7 +9,7 @@ export class Session extends EventTarget {
     this.arms = page.arms ?? [];
     this.tracks = (page.tracks ?? []).map((data, k) => new Track(data, this.arms[data.arm ?? 0], k));
     const solid = this.tracks.filter((track) => !track.ghost);
-    this.active = (solid.at(-1) ?? this.tracks.at(-1))?.index ?? -1;
+    this.active = page.chosen ?? (solid.at(-1) ?? this.tracks.at(-1))?.index ?? -1;
     this.sync = "clock";
     // A coat is first seen as it is in the end; playback begins at the beginning.
     this.t = page.coat?.growth ? (this.tracks[this.active]?.duration ?? 0) : 0;
@@ -39,6 +39,11 @@ export class Session extends EventTarget {
   isGhost(track) {
     const paired = this.tracks.some((one) => one.group === this.track.group && one.ghost);
     return paired && track !== this.track;
+  }
+
+  /** Whether something of the page is to be seen beside the active track. */
+  beside({ track = -1 }) {
+    return track < 0 || track === this.active;
   }
 
   get duration() {

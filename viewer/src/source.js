@@ -106,19 +106,29 @@ export class SourcePane {
     this.text.replaceChildren(...blocks);
   }
 
-  /** Time and number of passes of each line of a file. */
+  /** Time, waits included, and number of passes of each line of a file. */
   spent(index) {
     const found = new Map();
+    const at = ({ source = -1, line }) => {
+      if (source !== index || !line) return null;
+      if (!found.has(line)) found.set(line, { time: 0, passes: 0, waits: 0, fault: false });
+      return found.get(line);
+    };
     for (const move of this.track?.moves ?? []) {
-      if ((move.source ?? -1) !== index || !move.line) continue;
-      const one = found.get(move.line) ?? { time: 0, passes: 0, fault: false };
+      const one = at(move);
+      if (!one) continue;
       one.fault ||= move.fault ?? false;
-      if (move.end !== undefined) {
-        one.passes += 1;
-        one.time += move.end - move.begin;
-      }
-      found.set(move.line, one);
+      if (move.end === undefined) continue;
+      one.passes += 1;
+      one.time += move.end - move.begin;
     }
+    for (const flag of this.track?.flags ?? []) {
+      const one = flag.duration > 0 ? at(flag) : null;
+      if (!one) continue;
+      one.waits += 1;
+      one.time += flag.duration;
+    }
+    for (const one of found.values()) one.passes ||= one.waits;
     return found;
   }
 
@@ -131,7 +141,7 @@ export class SourcePane {
       const bar = h("i");
       bar.style.width = `${Math.max(4, (100 * spent.time) / most)}%`;
       heat.append(bar);
-      const times = spent.passes > 1 ? `, driven ${spent.passes} times` : "";
+      const times = spent.passes > 1 ? `, ${spent.passes} times` : "";
       row.title = `${seconds(spent.time)}${times}`;
     }
     const cost = spent?.fault ? "fault" : spent?.passes ? `${spent.passes > 1 ? `${spent.passes} × ` : ""}${(spent.time / spent.passes).toFixed(2)}` : "";

@@ -8,7 +8,7 @@ const UNBROKEN = 30; // characters of a cell that stays in one line; longer ones
 export class TablePane {
   constructor(session, host, drawings = []) {
     Object.assign(this, { session, host });
-    this.tables = [...drawings, ...(session.page.tables ?? [])];
+    this.all = [...drawings, ...(session.page.tables ?? [])];
     this.at = 0;
     this.order = null;
     this.tabs = h("div", { class: "tabs", role: "tablist" });
@@ -16,10 +16,27 @@ export class TablePane {
     this.note = h("p", { class: "quiet note" });
     this.body = h("div", { class: "scroll" });
     host.append(h("div", { class: "bar" }, this.tabs, this.filter), this.note, this.body);
-    this.names();
     session.on("time", () => this.mark());
-    session.on("track", () => this.mark());
-    this.open(0);
+    session.on("track", () => this.choose());
+    new ResizeObserver(() => this.fit()).observe(this.body);
+    this.choose();
+  }
+
+  /** The tables of all tracks and of the active one; of a table that changes it is the same one. */
+  choose() {
+    const open = this.tables?.[this.at];
+    this.tables = this.all.filter((table) => this.session.beside(table));
+    this.names();
+    const at = this.tables.findIndex((table) => table.title === open?.title);
+    if (open && this.tables[at] === open) {
+      this.at = at;
+      this.select();
+      this.mark();
+    } else this.open(Math.max(at, 0));
+  }
+
+  select() {
+    [...this.tabs.children].forEach((tab, i) => tab.setAttribute("aria-selected", String(i === this.at)));
   }
 
   names() {
@@ -41,7 +58,7 @@ export class TablePane {
     if (!this.tables[k]) return;
     this.at = k;
     this.order = null;
-    [...this.tabs.children].forEach((tab, i) => tab.setAttribute("aria-selected", String(i === k)));
+    this.select();
     this.note.textContent = this.tables[k].note ?? "";
     this.note.hidden = !this.tables[k].note;
     this.filter.hidden = Boolean(this.tables[k].draw);
@@ -97,7 +114,18 @@ export class TablePane {
       left > 0 ? h("p", { class: "quiet" }, `… and ${left} more rows: filter them`) : "",
       rows.length ? "" : h("p", { class: "quiet" }, table.rows.length ? "no row matches" : "nothing"),
     );
+    this.fit();
     this.mark();
+  }
+
+  /** Text is broken where a table is wider than its place, and fits if it is. */
+  fit() {
+    const table = this.body.querySelector("table");
+    if (!table) return;
+    const wide = () => this.body.scrollWidth > this.body.clientWidth + 1;
+    table.classList.remove("tight");
+    if (wide()) table.classList.add("tight");
+    if (wide()) table.classList.remove("tight");
   }
 
   /** All tables one below the other, for paper. */

@@ -171,6 +171,15 @@ def test_a_station_runs_on_one_clock(opened: Opened) -> None:
     assert view.evaluate("flyby.view.arms.map((arm) => arm.ghost)") == [False, False]
     assert view.evaluate("flyby.session.duration") == pytest.approx(made.duration, abs=2e-3)
     schedules = made.run.schedules
+    # Who ends last is seen first; bar and tables are those of who is chosen.
+    assert made.bottleneck == view.evaluate("flyby.session.track.name") == "right"
+    assert "waits for others 2.6" in view.locator(".shares").inner_text()
+    view.locator(".tabs").get_by_text("Lines").click()
+    assert view.locator("tbody td").first.inner_text() == "11"
+    view.locator(".choice").get_by_role("button", name="left").click()
+    assert "waits for others" not in view.locator(".shares").inner_text()
+    assert view.locator(".tabs [aria-selected=true]").inner_text() == "Lines"
+    assert view.evaluate("flyby.tables.tables.map((table) => table.track ?? 0)").count(1) == 0
     # Both stand where their schedules say, while the one waits and when it goes on.
     for t in (1.0, 2.5, 4.0, 6.5):
         for k, (name, member) in enumerate(made.station.members.items()):
@@ -194,6 +203,33 @@ def test_a_station_runs_on_one_clock(opened: Opened) -> None:
     shown = view.locator(".source .bar").all_inner_texts()
     assert [text.split(":")[0] for text in shown] == ["right", "left"]
     assert view.locator(".line.now").first.get_attribute("data-line") == str(spell.action.span.line)
+
+
+def test_no_column_of_the_causes_is_cut(opened: Opened) -> None:
+    program = flyby.read(ROOT / "examples/pick.script", cell=ROOT / "examples/cell/pick.toml")
+    view = opened(page_bytes(flyby.emulate(program)))
+    assert view.locator("th").last.inner_text() == "line"
+    room = "[flyby.tables.body.scrollWidth, flyby.tables.body.clientWidth]"
+    wide, has = view.evaluate(room)
+    assert wide <= has
+    # A wait takes its time at its own line, not at that of the move before it.
+    costs = view.locator(".line:has-text('sleep(0.3)') .cost, .line:has-text('movel(spot') .cost")
+    assert costs.all_inner_texts()[1] == "2 × 0.30"
+
+
+def test_of_two_states_the_routine_that_differs_is_seen(opened: Opened, folder: Path) -> None:
+    text = SQUARE.read_text("utf-8")
+    begin, end = text.index("PROC main()"), text.index("ENDMODULE")
+    second = text[begin:end].replace("main", "Again")
+    for name, speed in {"old": "v500", "new": "v300"}.items():
+        made = text[:end] + second.replace("v500", speed) + text[end:]
+        (folder / f"{name}.mod").write_text(made, "utf-8")
+    found = flyby.diff(folder / "old.mod", folder / "new.mod", robot=ROBOT)
+    view = opened(page_bytes(found))
+    shown = view.evaluate("[flyby.session.track.group, flyby.session.track.name]")
+    assert shown == ["Again", "after"]
+    titles = view.evaluate("flyby.tables.tables.map((table) => table.title)")
+    assert titles == ["Routines", "Differences", "Files", "Moves"]
 
 
 def test_a_station_that_never_ends_says_so(opened: Opened, folder: Path) -> None:
