@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -19,6 +20,8 @@ from ...core.files.archive import named_as_packed
 
 WIDE = 180
 """Columns of a table that goes into a file or a pipe."""
+TOLD_EVERY = 30.0
+"""s between lines that tell of long work where nobody looks."""
 _BETWEEN = 3
 """Blanks between columns."""
 _DRAWN_ANYWAY = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
@@ -245,13 +248,21 @@ def _complain(label: str, style: str, message: str) -> None:
 
 @contextmanager
 def progress(message: str) -> Iterator[Callable[[str], None]]:
-    """Show a line that moves while work goes on, if someone is looking.
+    """Show a line that moves while work goes on; where nobody looks, a line now and then.
 
     Yields:
         What changes the message.
     """
     if not sys.stderr.isatty():
-        yield lambda message: None
+        told = time.monotonic()
+
+        def tell(message: str) -> None:
+            nonlocal told
+            if time.monotonic() - told > TOLD_EVERY:
+                told = time.monotonic()
+                print(_shown(message), file=sys.stderr, flush=True)
+
+        yield tell
         return
     from rich.console import Console
 

@@ -146,3 +146,16 @@ def test_helps_show_no_type_behind_switches(flyby: Flyby) -> None:
     said = flyby("paint", "--help").stdout
     assert "bool" not in said and "--force" in said
     assert "The first curve, and within what it may change" in said
+
+
+def test_long_work_tells_of_itself_where_nobody_looks(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with console.progress("reading") as say:
+        say("searching: 1 of 8")
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(console, "TOLD_EVERY", -1.0)
+    with console.progress("reading") as say:
+        say("searching: 2 of 8")
+        say("searching: 3 of 8")
+    assert capsys.readouterr().err == "searching: 2 of 8\nsearching: 3 of 8\n"

@@ -9,6 +9,8 @@ Assembly" (Procedia CIRP 44, 2016).
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -42,6 +44,8 @@ _WORTH = 5e-4
 """Share of the energy that a slower program must save to count."""
 _CROWDED = 2.0
 """Power of the spacing of durations: energy falls steepest at the fast end."""
+_KEPT = 1e-5
+"""Of constraints, by which a program that is told of may be off."""
 _Served = tuple[Goal, EvaluatedProgram]
 """A goal, and what serves it best."""
 
@@ -141,12 +145,13 @@ class _Work:
         """All of it."""
         notes: list[Note] = []
         candidates: list[_Served] = []
-        seen = _Seen(self.report, candidates, 2 * count)
+        seen = _Seen(self.report, 2 * count)
         search, given = self._prepared(program, notes, seen.look)
         with suppress(KeyboardInterrupt, _Ended):
             self._search(search, count, candidates, seen)
         points: list[FrontPoint] = []
         with suppress(KeyboardInterrupt):
+            self._tell("proving the largest zones", 0, 1)
             points += self._zones_alone(program)
             for k, (goal, candidate) in enumerate(candidates):
                 finished = search.finish(goal, candidate.x)
@@ -156,7 +161,7 @@ class _Work:
                     )
                 else:
                     points.append(finished)
-                if self._tell("writing and proving", k + 1, len(candidates)):
+                if self._tell(_proven(points, given), k + 1, len(candidates)):
                     break
         return Front(
             given,
@@ -316,21 +321,27 @@ class _Seen:
 
     Args:
         report: see `pareto`.
-        found: candidates so far.
         total: searches.
         given: energy of the program as it is; 0 while it is not known.
+        done: searches that are over.
+        looked: programs that were driven.
+        fastest, least: s and energy of those among them that keep what is to be kept.
     """
 
     report: Report | None
-    found: list[_Served]
     total: int
     given: float = 0.0
     done: int = 0
     looked: int = 0
+    fastest: float = math.inf
+    least: float = math.inf
 
     def look(self, point: EvaluatedProgram) -> None:
         """Count a program that was driven; it may not end the search."""
         self.looked += 1
+        if point.shape is None or point.shape.constraints.min(initial=0.0) > -_KEPT:
+            self.fastest = min(self.fastest, point.duration)
+            self.least = min(self.least, point.energy)
         if self.report is not None:
             self.report(self._progress())
 
@@ -346,16 +357,23 @@ class _Seen:
 
     def _progress(self) -> Progress:
         stage = f"searching, {counted(self.looked, 'program')} driven"
-        if self.found and self.given:
-            points = [candidate for _, candidate in self.found]
-            fastest = min(point.duration for point in points)
-            least = 100.0 * min(point.energy for point in points) / self.given
-            stage += f", so far from {fastest:.3f} s down to {least:.0f} % of the energy"
+        if self.given and math.isfinite(self.fastest):
+            least = 100.0 * self.least / self.given
+            stage += f", so far from {self.fastest:.3f} s down to {least:.0f} % of the energy"
         return Progress(stage, self.done, self.total)
 
 
 class _Ended(Exception):
     """The user has seen enough."""
+
+
+def _proven(points: Sequence[FrontPoint], given: FrontPoint) -> str:
+    """What is done while programs are written, and what there is already."""
+    if not points:
+        return "writing and proving"
+    fastest = min(point.duration for point in points)
+    least = 100.0 * min(point.energy for point in points) / abs(given.energy)
+    return f"writing and proving, so far from {fastest:.3f} s down to {least:.0f} % of the energy"
 
 
 def _rank(goal: Goal, point: FrontPoint) -> tuple[float, float]:

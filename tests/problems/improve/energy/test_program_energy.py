@@ -353,6 +353,7 @@ def test_ended_early_there_is_still_a_front():
     assert searched[-1].done == 3 < searched[-1].total
     # It tells what it has so far, while each search goes on as well.
     assert len(searched) > 10 and "% of the energy" in searched[-1].stage
+    assert any("so far from" in state.stage for state in searched if state.done == 1)
 
 
 def test_too_few_points_are_refused():
