@@ -55,7 +55,13 @@ class SolutionProgress:
         self._last_x = point.x
 
     def visit(
-        self, point: Point, multipliers: FloatArray, length: float, kind: str, shift: float
+        self,
+        point: Point,
+        multipliers: FloatArray,
+        length: float,
+        kind: str,
+        shift: float,
+        last: bool = True,
     ) -> OptimalityResiduals:
         """Take note of a point at the beginning of an iteration.
 
@@ -63,6 +69,7 @@ class SolutionProgress:
             point: with derivatives.
             multipliers: (m,).
             length, kind, shift: of the step that led there; see `Iteration`.
+            last: whether to end where the residuals are within the tolerance.
 
         Raises:
             SolutionEnd: nothing is left to do.
@@ -71,7 +78,7 @@ class SolutionProgress:
         self._remember(point, multipliers, at)
         self._report(point, at, length, kind, shift)
         self._last_x = point.x
-        if at.within(self._options.tolerance):
+        if last and at.within(self._options.tolerance):
             raise self.converged(point, multipliers, at)
         if self.evidence(self.best.at, self.best.objective).away or self._is_away(point):
             raise SolutionEnd(Ending.AWAY)

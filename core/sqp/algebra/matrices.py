@@ -47,9 +47,9 @@ class Sparsity:
         """Whether every place has an entry: then entry k stands at row k % rows."""
         return self.size == self.shape[0] * self.shape[1]
 
-    def equals(self, rows: ArrayLike, starts: ArrayLike) -> bool:
+    def equals(self, rows: IntArray, starts: IntArray) -> bool:
         """Whether these are the same places."""
-        return np.array_equal(self.starts, starts) and np.array_equal(self.rows, rows)
+        return bool(_same(self.starts, starts) and _same(self.rows, rows))
 
 
 class SparseMatrix:
@@ -116,6 +116,16 @@ def empty(columns: int) -> SparseMatrix:
 def identity(n: int) -> Sparsity:
     """The pattern of a diagonal (n, n)."""
     return Sparsity((n, n), np.arange(n), np.arange(n + 1))
+
+
+@njit(cache=True, error_model="numpy")
+def _same(mine: IntArray, other: IntArray) -> bool:
+    if len(mine) != len(other):
+        return False
+    for k in range(len(mine)):
+        if mine[k] != other[k]:
+            return False
+    return True
 
 
 @njit(cache=True, error_model="numpy")

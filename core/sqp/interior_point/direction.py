@@ -34,7 +34,7 @@ class Errors(NamedTuple):
     Args:
         dual: largest slope of the Lagrangian.
         primal: largest violation.
-        least, largest: of the products of multiplier and distance.
+        least, largest, total: of the products of multiplier and distance.
         scale: of the products.
     """
 
@@ -42,6 +42,7 @@ class Errors(NamedTuple):
     primal: float
     least: float
     largest: float
+    total: float
     scale: float
 
 
@@ -74,6 +75,15 @@ def barrier_slopes(
             found[k] -= mu / (at.v[k] - box.lower[k])
         if np.isfinite(box.upper[k]):
             found[k] += mu / (box.upper[k] - at.v[k])
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def largest_change(change: FloatArray, v: FloatArray) -> float:
+    """The largest change of values (k,), each in its size or in one."""
+    found = 0.0
+    for k in range(len(v)):
+        found = max(found, abs(change[k]) / max(1.0, abs(v[k])))
     return found
 
 
@@ -126,16 +136,16 @@ def step_from(
 
 @njit(cache=True, error_model="numpy")
 def errors_at(
-    at: InteriorIterate, box: InteriorLimits, slopes: FloatArray, rest: FloatArray
-) -> Errors:
-    """Errors at a point.
+    at: InteriorIterate, box: InteriorLimits, d: FirstDerivatives, rest: FloatArray
+) -> tuple[FloatArray, float, float, float, float, float, float]:
+    """Slopes (n + m,) of the Lagrangian at a point, and what `Errors` takes.
 
     Args:
-        slopes: (n + m,) of the Lagrangian.
         rest: (m,) c − s.
     """
+    slopes = lagrangian_slopes(at, d)
     dual, primal = 0.0, 0.0
-    least, largest = np.inf, 0.0
+    least, largest, total = np.inf, 0.0, 0.0
     sizes, count = 0.0, 0
     for i in range(len(rest)):
         primal = max(primal, abs(rest[i]))
@@ -151,9 +161,10 @@ def errors_at(
                 pressing = at.low[k] if side == 0 else at.high[k]
                 product = abs(at.v[k] - limit) * pressing
                 least, largest = min(least, product), max(largest, product)
+                total += product
                 sizes += pressing
                 count += 1
     if count == 0:
         least = 0.0
     scale = max(_LARGE, sizes / max(1, count + len(rest))) / _LARGE
-    return Errors(dual / scale, primal, least, largest, scale)
+    return slopes, dual / scale, primal, least, largest, total, scale

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -29,7 +30,8 @@ class Taken:
         point: where it leads, with derivatives.
         v: (n + m,) variables and slacks there.
         step: the whole step.
-        length: share of it.
+        length: share of it that values and the rows' multipliers take.
+        dual: share that the limits' multipliers may take.
         kind: see `Iteration`.
     """
 
@@ -37,6 +39,7 @@ class Taken:
     v: FloatArray
     step: InteriorIterate
     length: float
+    dual: float
     kind: str
 
 
@@ -67,21 +70,23 @@ class LineSearch:
             slope: of objective and barrier along the step.
         """
         keep = max(_LEAST_KEPT, 1.0 - mu)
-        length, _ = longest(place.at, step, self._box, keep)
+        length, dual = longest(place.at, step, self._box, keep)
         theta, phi = self.measures(place.at.v, place.point, mu)
-        size = float(np.abs(step.v).max())
-        tiny = _ROUNDING * max(1.0, float(np.abs(place.at.v).max()))
+        size = tiny = 0.0
         for halving in range(_HALVINGS):
             trial = self._trial(place, step, length)
             if trial is not None:
                 point, v = trial
                 after_it = self.measures(v, point, mu)
                 if self._judged((theta, phi), after_it, slope, length, point):
-                    return Taken(point, v, step, length, "normal")
+                    return Taken(point, v, step, length, dual, "normal")
                 if halving == 0 and after_it[0] >= theta:
                     found = self._corrected(place, point, v, (theta, phi), slope, length, mu)
                     if found is not None:
                         return found
+            if halving == 0:
+                size = float(np.abs(step.v).max())
+                tiny = _ROUNDING * max(1.0, float(np.abs(place.at.v).max()))
             length *= 0.5
             if length * size <= tiny:
                 break
@@ -113,7 +118,7 @@ class LineSearch:
         point: Point,
     ) -> bool:
         """Whether the filter takes a point, which then has derivatives."""
-        if not np.isfinite(after_it[1]):
+        if not isfinite(after_it[1]):
             return False
         descends = self.filter.judge(before, after_it, slope, length)
         if descends is None:
@@ -148,14 +153,14 @@ class LineSearch:
                 step, _ = self._newton.step(mu, rest)
             except SingularError:
                 return None
-            share, _ = longest(place.at, step, self._box, max(_LEAST_KEPT, 1.0 - mu))
+            share, dual = longest(place.at, step, self._box, max(_LEAST_KEPT, 1.0 - mu))
             trial = self._trial(place, step, share)
             if trial is None:
                 return None
             point, v = trial
             after_it = self.measures(v, point, mu)
             if self._judged(before, after_it, slope, length, point):
-                return Taken(point, v, step, share, "corrected")
+                return Taken(point, v, step, share, dual, "corrected")
             if after_it[0] > _CORRECTED_ENOUGH * theta:
                 return None
             theta = after_it[0]

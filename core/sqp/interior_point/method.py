@@ -18,9 +18,9 @@ from ..filter import Filter
 from ..problem.errors import CallableError
 from ..problem.evaluation import Point
 from .barrier import Barrier
-from .direction import Errors, barrier_slopes, errors_at, lagrangian_slopes
+from .direction import Errors, barrier_slopes, largest_change
 from .functions import Functions
-from .iterate import InteriorIterate, InteriorLimits, advance, keep_near, longest, push_inside
+from .iterate import InteriorIterate, InteriorLimits, advance, keep_near, push_inside
 from .line_search import LineSearch, Taken
 from .newton import Newton, Place, SingularError
 
@@ -89,6 +89,7 @@ class InteriorPoint:
         self.hessian = self.functions.hessian(moved, at.y)
         self.place = Place(at, moved, moved.c - at.v[n:])
         at.y[:] = self.newton.first_multipliers(self.place, self.hessian)
+        self.place.measure(self.box)
         self._start_theta = max(1.0, theta, float(np.abs(self.place.rest).sum()))
         self._new_filter()
 
@@ -132,12 +133,6 @@ class InteriorPoint:
             _LARGEST_FACTOR * self._start_theta, _SMALL_FACTOR * self._start_theta
         )
 
-    def errors(self) -> Errors:
-        """Of the problem itself, μ = 0."""
-        place = self.place
-        slopes = lagrangian_slopes(place.at, place.derivatives)
-        return Errors(*errors_at(place.at, self.box, slopes, place.rest))
-
     def run(self) -> InteriorEnding:
         """InteriorIterate until the end.
 
@@ -148,7 +143,7 @@ class InteriorPoint:
         while True:
             if self._seen(self, length, kind):
                 return InteriorEnding.STOPPED
-            errors = self.errors()
+            errors = self.place.errors
             if self._small(errors):
                 return InteriorEnding.SMALL
             # A short step of a shifted system hides that the barrier's problem is not solved.
@@ -158,7 +153,7 @@ class InteriorPoint:
             if taken is None:
                 return InteriorEnding.STUCK
             length, kind = taken.length, taken.kind
-            size = float((np.abs(taken.step.v) / (1.0 + np.abs(self.place.at.v))).max())
+            size = largest_change(taken.step.v, self.place.at.v)
             self._advance(taken)
             tiny = tiny + 1 if size * length < _TINY else 0
             if tiny and not self.barrier.lower() and tiny > 1:
@@ -189,11 +184,10 @@ class InteriorPoint:
         return self.hessian
 
     def _advance(self, taken: Taken) -> None:
-        place, mu = self.place, self.barrier.mu
-        _, dual = longest(place.at, taken.step, self.box, max(0.99, 1.0 - mu))
-        advance(place.at, taken.step, self.box, taken.v, taken.length, dual, mu)
+        at = self.place.at
+        advance(at, taken.step, self.box, taken.v, taken.length, taken.dual, self.barrier.mu)
         n = len(taken.point.x)
-        self.place = Place(place.at, taken.point, taken.point.c - taken.v[n:])
+        self.place = Place(at, taken.point, taken.point.c - taken.v[n:]).measure(self.box)
 
     def jump(self, point: Point, slacks: FloatArray) -> None:
         """Go on from a point with derivatives, its multipliers chosen anew."""
@@ -206,6 +200,7 @@ class InteriorPoint:
         keep_near(at, box, self.barrier.mu, 10.0)
         self.place = Place(at, point, point.c - v[n:])
         at.y[:] = self.newton.first_multipliers(self.place, self.hessian)
+        self.place.measure(box)
 
 
 def make_box(functions: Functions, tolerance: float) -> InteriorLimits:

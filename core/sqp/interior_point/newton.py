@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -10,12 +10,7 @@ from ...arrays import BoolArray, FloatArray
 from ..algebra.linear import SaddlePatterns
 from ..algebra.matrices import SparseMatrix, Sparsity
 from ..problem.evaluation import Point
-from .direction import (
-    FirstDerivatives,
-    barrier_slopes,
-    lagrangian_slopes,
-    step_from,
-)
+from .direction import Errors, FirstDerivatives, errors_at, largest_change
 from .iterate import InteriorIterate, InteriorLimits
 from .system import BarrierSystem, SystemWeights
 
@@ -33,7 +28,6 @@ class SingularError(ArithmeticError):
     """No shift gives the system the right inertia."""
 
 
-@dataclass(slots=True)
 class Place:
     """A point of the interior with all that is known of it.
 
@@ -41,17 +35,29 @@ class Place:
         at: variables, slacks, multipliers.
         point: values and derivatives.
         rest: (m,) c − s.
+
+    Attributes:
+        derivatives: as compiled code takes them.
+        slopes: (n + m,) of the Lagrangian, once `measure` has been called.
+        errors: how far it is from a solution of the problem itself, μ = 0; likewise.
     """
 
-    at: InteriorIterate
-    point: Point
-    rest: FloatArray
+    __slots__ = ("at", "derivatives", "errors", "point", "rest", "slopes")
 
-    @property
-    def derivatives(self) -> FirstDerivatives:
-        """As compiled code takes them."""
-        J = self.point.J
-        return FirstDerivatives(self.point.g, J.pattern.starts, J.pattern.rows, J.data)
+    def __init__(self, at: InteriorIterate, point: Point, rest: FloatArray) -> None:
+        self.at = at
+        self.point = point
+        self.rest = rest
+        J = point.J
+        self.derivatives = FirstDerivatives(point.g, J.pattern.starts, J.pattern.rows, J.data)
+        self.slopes: FloatArray
+        self.errors: Errors
+
+    def measure(self, box: InteriorLimits) -> Place:
+        """Work out slopes and errors, the multipliers being final."""
+        self.slopes, *errors = errors_at(self.at, box, self.derivatives, self.rest)
+        self.errors = Errors(*errors)
+        return self
 
 
 class Newton:
@@ -96,7 +102,7 @@ class Newton:
         if self._relative or self.shift == 0.0:
             self.creeps = 0
             return step, slope
-        size = float((np.abs(step.v) / np.maximum(1.0, np.abs(place.at.v))).max())
+        size = largest_change(step.v, place.at.v)
         self.creeps = self.creeps + 1 if size < _CREEP else 0
         if self.creeps < _CREEPS:
             return step, slope
@@ -135,11 +141,6 @@ class Newton:
                 raise SingularError("no shift makes the system definite")
         self._last_shift = shift
 
-    @property
-    def plain(self) -> FloatArray:
-        """Slopes (n + m,) of the Lagrangian without the barrier."""
-        return np.asarray(lagrangian_slopes(self._place.at, self._place.derivatives))
-
     def step(self, mu: float, rest: FloatArray | None = None) -> tuple[InteriorIterate, float]:
         """The step for μ, and the slope of objective and barrier along it.
 
@@ -148,18 +149,14 @@ class Newton:
         """
         place = self._place
         wanted = place.rest if rest is None else rest
-        slope = barrier_slopes(self.plain, place.at, self._box, mu)
-        found, left = self._system.solve(slope, wanted, self._box)
+        given = place.at, self._box, place.derivatives, place.slopes, wanted, mu
+        step, along, left = self._system.step(*given)
         if left > _BAD and self._dependent == 0.0:
             self._dependent = _DEPENDENT
             if self._again(self.shift):
-                found, left = self._system.solve(slope, wanted, self._box)
-        if not np.isfinite(left):
+                step, along, left = self._system.step(*given)
+        if not isfinite(left):
             raise SingularError("the system has no finite solution")
-        sigma = self._system.weights.sigma
-        step, along = step_from(
-            found, sigma, slope, wanted, place.derivatives, place.at, self._box, mu
-        )
         return step, along
 
     def first_multipliers(self, place: Place, H: SparseMatrix) -> FloatArray:

@@ -14,7 +14,7 @@ from .barrier import Barrier
 from .functions import UserFunctions
 from .last_digits import LastDigits
 from .method import InteriorEnding, InteriorPoint
-from .newton import SingularError
+from .newton import Place, SingularError
 from .restoration import curvature_of, restored
 
 _TRIED_FROM = 1e-3
@@ -25,6 +25,8 @@ _PATIENCE = 100
 """Iterations in a row without smaller residuals after which the method gives up."""
 _SHARE = 0.8
 """Of all iterations after which it gives up; the rest is left to the other method."""
+_GAP = 10.0
+"""Tolerances of the objective that the products of multiplier and distance may come to together."""
 _FAR = 1e8
 """By which variables may grow; unbounded problems are left to the other method."""
 
@@ -100,15 +102,22 @@ class InteriorSolution:
             progress.iterations += 1
             if self._before is not None:
                 self._hessian.moved(self._before, point, y)
-            progress.visit(point, y, length, kind, method.newton.shift)
+            progress.visit(point, y, length, kind, method.newton.shift, self._no_gap(place))
         self._before = point
-        errors = method.errors()
+        errors = place.errors
         worst = max(errors.dual, errors.primal, errors.largest / errors.scale)
         if worst > self._try_at:
             return self._hopeless(method, worst)
         self._try_at = _TRIED_AGAIN * worst
         self._try(method, last=False)
         return False
+
+    def _no_gap(self, place: Place) -> bool:
+        """Whether the limits' multipliers leave nothing to be gained: each product of multiplier
+        and distance may be within the tolerance, and thousands of them together a share of the
+        objective."""
+        factor = self._problem.evaluation.objective_factor
+        return place.errors.total <= _GAP * self._tolerance * max(factor, abs(place.point.f))
 
     def _try(self, method: InteriorPoint, last: bool) -> None:
         """Try for the last digits.

@@ -19,6 +19,7 @@ from ...arrays import BoolArray, FloatArray
 from ..algebra.ldl import Factors, factorise
 from ..algebra.linear import EntryIndices, SaddleMatrices, SaddlePattern, refined
 from ..algebra.matrices import SparseMatrix, Sparsity
+from .direction import FirstDerivatives, barrier_slopes, step_from
 from .iterate import InteriorIterate, InteriorLimits
 
 _REGULARISATION = 1e-10
@@ -50,8 +51,9 @@ class BarrierSystem:
 
     def __init__(self, pattern: SaddlePattern, H: Sparsity, A: Sparsity, held: BoolArray) -> None:
         self._pattern = pattern
-        self._in_H = ~(held[H.rows] | held[H.columns]) if held.any() else None
-        self._in_A = ~held[A.columns] if held.any() else None
+        self._held = held
+        data = np.zeros(H.size), np.zeros(A.size)
+        self._matrices = SaddleMatrices(H.starts, H.rows, data[0], A.starts, A.rows, data[1])
 
     def factorise(
         self,
@@ -73,18 +75,16 @@ class BarrierSystem:
             slack: what is subtracted from the rows' diagonal, for rows that depend on each other.
             relative: whether δ counts in the size of each variable.
         """
-        return self.factorise_weighted(H, A, weights_of(at, box, shift, slack, relative))
+        weights = weights_of(at, box, shift, slack, relative)
+        return self.factorise_weighted(H, A, SystemWeights(*weights))
 
     def factorise_weighted(self, H: SparseMatrix, A: SparseMatrix, weights: SystemWeights) -> int:
         """The same with weights as given."""
         self.weights = weights
-        in_H, rows = H.data, A.data * self.weights.units[A.pattern.rows]
-        if self._in_H is not None and self._in_A is not None:
-            in_H, rows = in_H * self._in_H, rows * self._in_A
-        P, B = H.pattern, A.pattern
-        self._matrices = SaddleMatrices(P.starts, P.rows, in_H, B.starts, B.rows, rows)
         factors, places = self._pattern.factors, self._pattern.places
-        return int(_factorised(self._matrices, factors, places, self.weights.exact))
+        return int(
+            _factorised(self._matrices, H.data, A.data, self._held, factors, places, weights)
+        )
 
     def solve(
         self, slope: FloatArray, rest: FloatArray, box: InteriorLimits
@@ -96,19 +96,37 @@ class BarrierSystem:
             slope: (n + m,) of the barrier's Lagrangian.
             rest: (m,) c − s.
         """
-        right = right_side(self.weights, slope, rest, box)
-        found = np.zeros_like(right)
-        left = refined(
-            self._matrices, self._pattern.factors, self.weights.exact, right, found, _EXACT
-        )
-        found[len(right) - len(rest) :] *= self.weights.units
+        found, left = _solved(self._matrices, self._pattern.factors, self.weights, slope, rest, box)
         return found, float(left)
+
+    def step(
+        self,
+        at: InteriorIterate,
+        box: InteriorLimits,
+        derivatives: FirstDerivatives,
+        slopes: FloatArray,
+        rest: FloatArray,
+        mu: float,
+    ) -> tuple[InteriorIterate, float, float]:
+        """Newton's step for the barrier's problem, the slope of objective and barrier along it, and
+        what is left of the right side.
+
+        Args:
+            slopes: (n + m,) of the Lagrangian without the barrier.
+            rest: (m,) c − s.
+        """
+        factors = self._pattern.factors
+        *parts, along, left = _stepped(
+            self._matrices, factors, self.weights, at, box, derivatives, slopes, rest, mu
+        )
+        return InteriorIterate(*parts), float(along), float(left)
 
 
 @njit(cache=True, error_model="numpy")
 def weights_of(
     at: InteriorIterate, box: InteriorLimits, shift: float, slack: float, relative: bool
-) -> SystemWeights:
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What `SystemWeights` takes."""
     k, m = len(at.v), len(at.y)
     n = k - m
     sigma, exact, units = np.empty(k), np.zeros(k), np.ones(m)
@@ -128,7 +146,7 @@ def weights_of(
             exact[j] = -1.0 - slack
         else:
             exact[j] = -1.0 / sigma[j] - slack
-    return SystemWeights(sigma, units, exact)
+    return sigma, units, exact
 
 
 @njit(cache=True, error_model="numpy")
@@ -152,19 +170,67 @@ def right_side(
 
 @njit(cache=True, error_model="numpy")
 def _factorised(
-    matrices: SaddleMatrices, factors: Factors, places: EntryIndices, exact: FloatArray
+    matrices: SaddleMatrices,
+    H: FloatArray,
+    A: FloatArray,
+    held: BoolArray,
+    factors: Factors,
+    places: EntryIndices,
+    weights: SystemWeights,
 ) -> int:
+    """See `BarrierSystem.factorise`; the matrices are overwritten."""
     n = len(matrices.P_starts) - 1
     delta = _REGULARISATION
     data = np.zeros(len(factors.rows))
-    for i in range(len(exact)):
-        data[places.diagonal[i]] = exact[i] + (delta if i < n else -delta)
+    for i in range(len(weights.exact)):
+        data[places.diagonal[i]] = weights.exact[i] + (delta if i < n else -delta)
     for j in range(n):
         for k in range(matrices.P_starts[j], matrices.P_starts[j + 1]):
+            i = matrices.P_rows[k]
+            matrices.P[k] = 0.0 if held[i] or held[j] else H[k]
             if places.P[k] >= 0:
                 data[places.P[k]] = matrices.P[k]
-            elif matrices.P_rows[k] == j:
+            elif i == j:
                 data[places.diagonal[j]] += matrices.P[k]
-    for k in range(len(matrices.A)):
-        data[places.A[k]] = matrices.A[k]
+        for k in range(matrices.A_starts[j], matrices.A_starts[j + 1]):
+            matrices.A[k] = 0.0 if held[j] else A[k] * weights.units[matrices.A_rows[k]]
+            data[places.A[k]] = matrices.A[k]
     return int(factorise(factors, data))
+
+
+@njit(cache=True, error_model="numpy")
+def _solved(
+    matrices: SaddleMatrices,
+    factors: Factors,
+    weights: SystemWeights,
+    slope: FloatArray,
+    rest: FloatArray,
+    box: InteriorLimits,
+) -> tuple[FloatArray, float]:
+    """See `BarrierSystem.solve`."""
+    right = right_side(weights, slope, rest, box)
+    found = np.zeros_like(right)
+    left = refined(matrices, factors, weights.exact, right, found, _EXACT)
+    n = len(right) - len(rest)
+    for i in range(len(rest)):
+        found[n + i] *= weights.units[i]
+    return found, left
+
+
+@njit(cache=True, error_model="numpy")
+def _stepped(
+    matrices: SaddleMatrices,
+    factors: Factors,
+    weights: SystemWeights,
+    at: InteriorIterate,
+    box: InteriorLimits,
+    d: FirstDerivatives,
+    slopes: FloatArray,
+    rest: FloatArray,
+    mu: float,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float]:
+    """See `BarrierSystem.step`."""
+    slope = barrier_slopes(slopes, at, box, mu)
+    found, left = _solved(matrices, factors, weights, slope, rest, box)
+    step, along = step_from(found, weights.sigma, slope, rest, d, at, box, mu)
+    return step.v, step.y, step.low, step.high, along, left

@@ -39,6 +39,8 @@ def vector(name: str, value: object, size: int) -> FloatArray:
     Raises:
         NlpError: it is no array of real numbers, or has another shape.
     """
+    if type(value) is np.ndarray and value.dtype == np.float64 and value.shape == (size,):
+        return value.copy()  # what most give needs no further look
     array = numbers(name, value)
     if array.shape != (size,):
         if array.size != size or array.ndim > 2:
@@ -53,6 +55,8 @@ def scalar(name: str, value: object) -> float:
     Raises:
         NlpError: it is no real number.
     """
+    if isinstance(value, float):
+        return float(value)
     array = numbers(name, value)
     if array.size != 1:
         raise NlpError(f"{name} gave shape {array.shape}, expected one number")

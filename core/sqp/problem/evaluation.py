@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import TypeVar
 
 import numpy as np
@@ -152,7 +153,9 @@ class Evaluation:
         if self.nlp.objective is None:
             return 0.0
         number = scalar("objective", self._at("objective", self.nlp.objective, x))
-        self._check_finite("objective", np.array([number]))
+        self._have_given.add("objective")
+        if not isfinite(number):
+            raise CallableError(f"objective gave {number} (entry 0)")
         return number
 
     def _gradient(self, x: FloatArray) -> FloatArray:
@@ -236,7 +239,7 @@ class Evaluation:
 
     def _check_finite(self, name: str, values: FloatArray) -> None:
         self._have_given.add(name)
-        if np.isfinite(values.sum()):  # one pass where nothing is wrong
+        if isfinite(values.sum()):  # one pass where nothing is wrong
             return
         bad = np.flatnonzero(~np.isfinite(values))
         if len(bad):

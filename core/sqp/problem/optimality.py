@@ -79,94 +79,12 @@ def residuals(
         bounds: x_lower, x_upper, c_lower, c_upper, unscaled.
         factors: of the objective and of the rows (m,): scaled over unscaled.
     """
-    x_lower, x_upper, c_lower, c_upper = bounds
-    factor, rows = factors
-    values = c / rows
-    slope, terms, row_terms = _sums(
-        x, values, g, J.pattern.starts, J.pattern.rows, J.data, multipliers, factor, rows
+    return OptimalityResiduals(
+        *_measured(x, c, g, J.pattern.starts, J.pattern.rows, J.data, multipliers, *factors, *bounds)
     )
-    y = multipliers * rows / factor
-    nu = bound_multipliers(x, slope, x_lower, x_upper)
-    stationarity, complementarity, violation, relative, rounding = _measured(
-        x, values, slope, terms, row_terms, nu, y, x_lower, x_upper, c_lower, c_upper
-    )
-    return OptimalityResiduals(stationarity, complementarity, violation, relative, rounding, nu)
 
 
 @njit(cache=True, error_model="numpy")
-def _sums(
-    x: FloatArray,
-    c: FloatArray,
-    g: FloatArray,
-    starts: IntArray,
-    rows: IntArray,
-    data: FloatArray,
-    multipliers: FloatArray,
-    factor: float,
-    factors: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The Lagrangian's slope (n,), the size of what it is the sum of (n,), and about the size of
-    what the rows are sums of (m,), |c| + |J||x|; unscaled."""
-    slope, terms, row_terms = np.empty_like(x), np.empty_like(x), np.abs(c)
-    for j in range(len(x)):
-        total, size = g[j], abs(g[j])
-        for k in range(starts[j], starts[j + 1]):
-            i = rows[k]
-            term = data[k] * multipliers[i]
-            total += term
-            size += abs(term)
-            row_terms[i] += abs(data[k] * x[j]) / factors[i]
-        slope[j], terms[j] = total / factor, size / factor
-    return slope, terms, row_terms
-
-
-@njit(cache=True, error_model="numpy")
-def _measured(
-    x: FloatArray,
-    c: FloatArray,
-    slope: FloatArray,
-    terms: FloatArray,
-    row_terms: FloatArray,
-    nu: FloatArray,
-    y: FloatArray,
-    x_lower: FloatArray,
-    x_upper: FloatArray,
-    c_lower: FloatArray,
-    c_upper: FloatArray,
-) -> tuple[float, float, float, float, bool]:
-    """The measures of `OptimalityResiduals`, in their order."""
-    stationarity, pressed, violation, relative, rounding = 0.0, 0.0, 0.0, 0.0, True
-    for j in range(len(x)):
-        left = abs(slope[j] + nu[j])
-        stationarity = max(stationarity, left)
-        relative = max(relative, left / max(1.0, terms[j]))
-        violation = max(violation, x_lower[j] - x[j], x[j] - x_upper[j])
-        if nu[j] != 0.0:
-            gap = x_upper[j] - x[j] if nu[j] > 0.0 else x[j] - x_lower[j]
-            pressed = max(pressed, abs(nu[j]) * gap)
-            relative = max(relative, abs(nu[j]) * gap / max(1.0, abs(nu[j])))
-    for i in range(len(c)):
-        outside = max(c_lower[i] - c[i], c[i] - c_upper[i], 0.0)
-        violation = max(violation, outside)
-        rounding = rounding and outside <= _ROUNDING * row_terms[i]
-        gap = abs(c_upper[i] - c[i]) if y[i] > 0.0 else abs(c[i] - c_lower[i])
-        # A distance beyond 1 counts as 1: a multiplier without a bound, or far from it, counts
-        # itself.
-        product = abs(y[i]) * min(gap, 1.0)
-        pressed = max(pressed, product)
-        relative = max(relative, product / max(1.0, abs(y[i])))
-    return stationarity, pressed, violation, relative, rounding
-
-
-def at_bounds(x: FloatArray, lower: FloatArray, upper: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Which variables (n,) are at their lower, and which at their upper bounds.
-
-    Near is what is small beside the variable and beside the distance of its bounds.
-    """
-    near = _ON_BOUND * np.minimum(np.maximum(1.0, np.abs(x)), upper - lower)
-    return x - lower <= near, upper - x <= near
-
-
 def bound_multipliers(
     x: FloatArray, slope: FloatArray, lower: FloatArray, upper: FloatArray
 ) -> FloatArray:
@@ -176,9 +94,73 @@ def bound_multipliers(
     Args:
         slope: (n,) of the Lagrangian without bounds.
     """
-    at_lower, at_upper = at_bounds(x, lower, upper)
-    reach = np.minimum(_PRODUCT / np.maximum(np.abs(slope), _PRODUCT), 1.0)
-    at_lower |= x - lower <= reach
-    at_upper |= upper - x <= reach
-    active = (at_lower & (slope > 0)) | (at_upper & (slope < 0))
-    return np.where(active, -slope, 0.0)
+    found = np.zeros_like(x)
+    for j in range(len(x)):
+        near = _ON_BOUND * min(max(1.0, abs(x[j])), upper[j] - lower[j])
+        near = max(near, min(_PRODUCT / max(abs(slope[j]), _PRODUCT), 1.0))
+        gap = x[j] - lower[j] if slope[j] > 0.0 else upper[j] - x[j]
+        if gap <= near and abs(slope[j]) > 0.0:
+            found[j] = -slope[j]
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def _measured(
+    x: FloatArray,
+    c: FloatArray,
+    g: FloatArray,
+    starts: IntArray,
+    rows: IntArray,
+    data: FloatArray,
+    multipliers: FloatArray,
+    factor: float,
+    factors: FloatArray,
+    x_lower: FloatArray,
+    x_upper: FloatArray,
+    c_lower: FloatArray,
+    c_upper: FloatArray,
+) -> tuple[float, float, float, float, bool, FloatArray]:
+    """The measures of `OptimalityResiduals`, in their order."""
+    stationarity, pressed, violation, relative, rounding = 0.0, 0.0, 0.0, 0.0, True
+    slopes, terms, row_terms = np.empty_like(x), np.empty_like(x), np.zeros(len(c))
+    for j in range(len(x)):
+        total, size = g[j], abs(g[j])
+        for k in range(starts[j], starts[j + 1]):
+            i = rows[k]
+            term = data[k] * multipliers[i]
+            total += term
+            size += abs(term)
+            row_terms[i] += abs(data[k] * x[j])
+        slopes[j], terms[j] = total / factor, size / factor
+    nu = bound_multipliers(x, slopes, x_lower, x_upper)
+    for j in range(len(x)):
+        left = abs(slopes[j] + nu[j])
+        stationarity = max(stationarity, left)
+        relative = max(relative, left / max(1.0, terms[j]))
+        violation = max(violation, x_lower[j] - x[j], x[j] - x_upper[j])
+        if nu[j] != 0.0:
+            gap = x_upper[j] - x[j] if nu[j] > 0.0 else x[j] - x_lower[j]
+            pressed = max(pressed, abs(nu[j]) * gap)
+            relative = max(relative, abs(nu[j]) * gap / max(1.0, abs(nu[j])))
+    for i in range(len(c)):
+        value, y = c[i] / factors[i], multipliers[i] * factors[i] / factor
+        outside = max(c_lower[i] - value, value - c_upper[i], 0.0)
+        violation = max(violation, outside)
+        # The row is the sum of about |c| + |J||x|.
+        rounding = rounding and outside <= _ROUNDING * (abs(value) + row_terms[i] / factors[i])
+        gap = abs(c_upper[i] - value) if y > 0.0 else abs(value - c_lower[i])
+        # A distance beyond 1 counts as 1: a multiplier without a bound, or far from it, counts
+        # itself.
+        product = abs(y) * min(gap, 1.0)
+        pressed = max(pressed, product)
+        relative = max(relative, product / max(1.0, abs(y)))
+    return stationarity, pressed, violation, relative, rounding, nu
+
+
+def at_bounds(x: FloatArray, lower: FloatArray, upper: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """Which variables (n,) are at their lower, and which at their upper bounds.
+
+    Near is what is small beside the variable and beside the distance of its bounds.
+    """
+    near = _ON_BOUND * np.minimum(np.maximum(1.0, np.abs(x)), upper - lower)
+    return x - lower <= near, upper - x <= near

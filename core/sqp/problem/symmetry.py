@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
+from ...arrays import BoolArray, FloatArray, IntArray
 from ..algebra.matrices import SparseMatrix, Sparsity
 from .errors import NlpError
 
@@ -27,9 +29,9 @@ class Symmetry:
         if self._pattern is not matrix.pattern:
             self._remember(matrix.pattern)
         pattern, data = matrix.pattern, matrix.data
-        other = np.where(self._found, data[self._places], 0.0)
-        if not np.any(data != other):
+        if _mirrored(data, self._places, self._found):
             return
+        other = np.where(self._found, data[self._places], 0.0)
         below = pattern.rows > pattern.columns
         above = pattern.rows < pattern.columns
         if not data[below].any() or not data[above].any():
@@ -56,3 +58,12 @@ class Symmetry:
         places = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))
         self._places = places
         self._found = keys[places] == wanted if len(keys) else np.zeros(0, dtype=np.bool_)
+
+
+@njit(cache=True, error_model="numpy")
+def _mirrored(data: FloatArray, places: IntArray, found: BoolArray) -> bool:
+    """Whether each entry equals its counterpart, or zero where there is none."""
+    for k in range(len(data)):
+        if data[k] != (data[places[k]] if found[k] else 0.0):
+            return False
+    return True
