@@ -37,6 +37,8 @@ class Orientation(StrEnum):
     """Four numbers, rounded to what a controller resolves."""
     EULER_ZYX = "euler zyx"
     """Angles about z, then the new y, then the new x."""
+    EULER_ZYZ = "euler zyz"
+    """Angles about z, then the new y, then the new z."""
     ROTATION_VECTOR = "rotation vector"
     """Axis times angle."""
 

@@ -99,6 +99,27 @@ def matrix_from_euler_zyx(a: float, b: float, c: float) -> FloatArray:
     return np.asarray(turns[2] @ turns[1] @ turns[0])
 
 
+def euler_zyz(matrix: FloatArray) -> tuple[float, float, float]:
+    """Angles a, b, c, rad, of a rotation about z, then the new y, then the new z (3, 3).
+
+    b is 0 to π; at both ends of it, where the two axes are one, c is 0.
+    """
+    across = math.hypot(matrix[0, 2], matrix[1, 2])
+    b = math.atan2(across, matrix[2, 2])
+    if across < 1e-12:
+        return math.atan2(-matrix[0, 1], matrix[1, 1]), b, 0.0
+    a = math.atan2(matrix[1, 2], matrix[0, 2])
+    # By what is left behind the first: near the ends of b the last row alone is noise.
+    x, y, _ = math.cos(a) * matrix[1] - math.sin(a) * matrix[0]
+    return a, b, math.atan2(x, y)
+
+
+def matrix_from_euler_zyz(a: float, b: float, c: float) -> FloatArray:
+    """The rotation (3, 3) of angles, rad, about z, then the new y, then the new z."""
+    first, last = matrix_from_euler_zyx(a, b, 0.0), matrix_from_euler_zyx(c, 0.0, 0.0)
+    return np.asarray(first @ last)
+
+
 def skew(vector: FloatArray) -> FloatArray:
     """Matrices (..., 3, 3) of the cross product with vectors (..., 3)."""
     x, y, z = np.moveaxis(np.asarray(vector, dtype=float), -1, 0)

@@ -18,7 +18,9 @@ from ...core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZon
 from ...core.spatial.pose import Pose, Quaternion, Vector3
 from ...core.spatial.rotation import (
     euler_zyx,
+    euler_zyz,
     matrix_from_euler_zyx,
+    matrix_from_euler_zyz,
     matrix_from_rotation_vector,
     quaternion_from_matrix,
     rotation_vector,
@@ -99,7 +101,9 @@ class Rounding:
         if self.orientation is Orientation.ROTATION_VECTOR:
             vector = [self.angle(v) for v in rotation_vector(matrix).tolist()]
             return _quaternion(matrix_from_rotation_vector(np.array(vector)))
-        return _quaternion(matrix_from_euler_zyx(*(self.angle(v) for v in euler_zyx(matrix))))
+        if self.orientation is Orientation.EULER_ZYZ:
+            return _quaternion(matrix_from_euler_zyz(*map(self.angle, euler_zyz(matrix))))
+        return _quaternion(matrix_from_euler_zyx(*map(self.angle, euler_zyx(matrix))))
 
     def zone(self, zone: Zone) -> Zone:
         """A zone no larger, and `FINE` for one of next to nothing.

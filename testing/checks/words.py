@@ -27,6 +27,7 @@ from ...core.program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind,
 from ...core.robot.model import Robot
 from ...core.source.patch.edits import alike, reading_of
 from ...core.spatial.pose import Pose
+from ...core.spatial.rotation import euler_zyx, euler_zyz
 from ..said import words_of
 from ..strategies import allowed, is_regular, joint_target
 from .golden import stated_speeds
@@ -317,7 +318,8 @@ def _said_otherwise(spoken: Dialect, move: Move, literals: Sequence[float]) -> I
 
 
 def _turns(form: Orientation, pose: Pose, angle: float) -> list[FloatArray]:
-    """How numbers say a rotation; the two quaternions of one, and the rotation vectors."""
+    """How numbers say a rotation; the two quaternions of one, and the rotation vectors; none where
+    two of three angles are about one axis, and their sum alone counts."""
     w, x, y, z = pose.quaternion
     if form is Orientation.QUATERNION:
         return [np.array([w, x, y, z]), -np.array([w, x, y, z])]
@@ -326,9 +328,12 @@ def _turns(form: Orientation, pose: Pose, angle: float) -> list[FloatArray]:
         short = rotation.as_rotvec()
         size = float(np.linalg.norm(short))
         return [short, short * (1 - 2 * np.pi / size)] if size > 0 else [short]
+    matrix = rotation.as_matrix()
     if form is Orientation.EULER_ZYX:
-        return [angle * rotation.as_euler("ZYX")]
-    return []
+        turns, same_axes = euler_zyx(matrix), np.hypot(matrix[0, 0], matrix[1, 0])
+    else:
+        turns, same_axes = euler_zyz(matrix), np.hypot(matrix[0, 2], matrix[1, 2])
+    return [] if same_axes < _NEAR else [angle * np.array(turns)]
 
 
 def _among(wanted: Sequence[float] | FloatArray, literals: Sequence[float]) -> bool:
