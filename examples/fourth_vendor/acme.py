@@ -30,7 +30,6 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
 
 from flyby.core.errors import InputError
 from flyby.core.hookspec import VendorRegister, hookimpl
@@ -49,7 +48,7 @@ from flyby.core.robot.model import Robot
 from flyby.core.source.lines.expressions import Datum, Expression, data_in, parse, parse_all
 from flyby.core.source.lines.interpreter import run_lines
 from flyby.core.source.lines.patcher import patch_lines
-from flyby.core.source.lines.program import Grammar, read_lines
+from flyby.core.source.lines.program import Grammar, read_lines, several
 from flyby.core.source.lines.statements import (
     Assign,
     Body,
@@ -85,13 +84,11 @@ def motion() -> MotionModel:
     return MotionModel(period=0.008, overlap=Overlap.SHRINK, provenance={"*": made_up})
 
 
-class Acme:
+class Acme(Grammar):
     """What ACME takes a line for; see `flyby.core.source.lines.program.Grammar`."""
 
     registers = frozenset({"R"})
     outputs = frozenset({"DO"})
-    vectors: Mapping[str, int] = MappingProxyType({})
-    argument = ""
 
     def statement(self, line: Line) -> LineStatement | None:
         """One line; a blank one or a comment (``;``) says nothing."""
@@ -141,9 +138,8 @@ def _if(line: Line, begin: int, grammar: Grammar) -> If:
     if then is None:
         raise ValueError("a statement should follow the condition")
     condition = parse(line.source, begin, then.start())
-    inner = grammar.statement(replace(line, start=then.end()))
-    assert inner is not None
-    return If(line.span, condition, Body((inner,)))
+    inner = several(grammar.statement(replace(line, start=then.end())))
+    return If(line.span, condition, Body(inner))
 
 
 def _drive(line: Line, word: str, begin: int) -> Drive:

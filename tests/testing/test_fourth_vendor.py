@@ -116,7 +116,7 @@ def test_what_the_language_cannot_say_is_refused(statement: object) -> None:
     ("lines", "said"),
     [
         ("WAIT 1\nLEAP 1\n", r"job\.acme:2:1: 'LEAP 1' is no ACME statement: unknown word LEAP"),
-        ("WAIT 1 +\n", r"job\.acme:1:9: a number or a numbered datum should stand here"),
+        ("WAIT 1 +\n", r"job\.acme:1:9: a number or a datum should stand here"),
         ("JUMP 1\n", r"job\.acme:1:1: there is no label 1"),
         ("CALL pik\nROUTINE pick\n", r"unknown routine 'pik': did you mean pick\?.*skip"),
         ("MOVEJ P[2] SPEED 1 - ZONE 0\n", r"unknown point 'P\[2\]': define it"),

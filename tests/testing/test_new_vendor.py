@@ -55,9 +55,7 @@ def test_its_own_tests_find_a_fault(folder: Path, tmp_path: Path) -> None:
     shutil.copytree(folder, wrong)
     language = wrong / "src" / "flyby_zeta" / "language.py"
     text = language.read_text("utf-8")
-    faulty = text.replace("speed[0] / 1000", "speed[0] / 100").replace(
-        "1000 * part.tcp", "100 * part.tcp"
-    )
+    faulty = text.replace('Amount("tcp", 1e-3)', 'Amount("tcp", 1e-2)')
     assert faulty != text
     language.write_text(faulty, "utf-8")
     made = own_tests(wrong, "golden_texts_mean")

@@ -37,6 +37,7 @@ def page() -> ModuleType:
     """The page as a module that stands beside the example's robot."""
     module = ModuleType("flyby_acme")
     module.__file__ = str(ROOT / "examples" / "fourth_vendor" / "page.py")
+    sys.modules[module.__name__] = module  # where dataclasses look for it
     for block in blocks("python"):
         exec(compile(block, "docs/guides/plugins.md", "exec"), vars(module))
     return module
@@ -133,7 +134,7 @@ def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:
     (file,) = acme.patch(changed, robot).values()
     assert file.text == text.replace("STOP", "PASS 30")
     with pytest.raises(SourceError, match=r"a\.acme:3:1"):
-        acme.read(text + "LEAP\n", "a.acme")
+        acme.read(text + "MOVEX P[1]\n", "a.acme")
     with pytest.raises(InputError, match="absent"):
         acme.read_file("absent.acme")
     assert page.Elbow(True).mismatch(page.Elbow(False)) == 1.0
@@ -143,7 +144,7 @@ def test_the_language_of_the_page_is_that_of_the_skeleton() -> None:
     skeleton = (ROOT / "testing" / "skeleton" / "language.py.txt").read_text("utf-8")
     skeleton = skeleton.replace("@NAME@", "ACME").replace("@name@", "acme")
     own = [block for block in blocks("python") if block in skeleton]
-    assert len(own) >= 7
+    assert len(own) >= 5
     assert sum(map(len, own)) > 0.9 * len(skeleton)
 
 

@@ -18,6 +18,7 @@ from .statements import (
     Jump,
     Label,
     Return,
+    Set,
     Statement,
 )
 
@@ -50,7 +51,8 @@ class Statements:
         """The name of a datum; of one whose number is computed, all that it may be; of one of
         several numbers, those of each."""
         if datum.index is None:
-            return frozenset([datum.word])
+            count = self._grammar.vectors.get(datum.word, 0)
+            return frozenset([datum.word, *(f"{datum.word}[{k + 1}]" for k in range(count))])
         if not isinstance(datum.index, Number) or isinstance(datum.element, Datum | Operation):
             return computed
         index = f"{datum.index.value:g}"
@@ -92,6 +94,8 @@ class Statements:
             made_of = self.reads([statement.value, *(i for i in indices if i is not None)])
             outputs = names if isinstance(statement.target.index, Number | None) else None
             return Step(writes=names, made_of=made_of, outputs=outputs if own else NOTHING)
+        if isinstance(statement, Set):
+            return Step(writes=frozenset([statement.word]), made_of=self.reads([statement.value]))
         if isinstance(statement, AssignAll):
             made_of = self.reads([term for _, term in statement.terms])
             return Step(writes=self._names(statement.target, self._all), made_of=made_of)
@@ -102,6 +106,8 @@ def expressions_of(statement: Statement) -> list[Expression]:
     """The expressions that decide what registers, outputs and jumps become."""
     if isinstance(statement, Assign):
         return [statement.target, statement.value]
+    if isinstance(statement, Set):
+        return [statement.value]
     if isinstance(statement, AssignAll):
         return [statement.target, *(term for _, term in statement.terms)]
     if isinstance(statement, If):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from ...errors import SourceError
+from ...errors import SourceError, Span
 from .expressions import Expression, Number, Operation
 from .statements import (
     Assign,
@@ -59,7 +59,7 @@ def nested(statements: Sequence[Statement]) -> list[Statement]:
             if here.opened is None:
                 raise SourceError("no block is open here", statement.span)
             blocks.pop()
-            blocks[-1].own.extend(_made(here.opened, here.parts))
+            blocks[-1].own.extend(_made(here.opened, here.parts, statement))
         else:
             here.own.append(statement)
     if (left := blocks[-1].opened) is not None:
@@ -88,11 +88,16 @@ def _with_otherwise(first: If, other: Otherwise) -> If:
 
 
 def _made(
-    opened: Open, parts: Sequence[tuple[Otherwise | None, list[Statement]]]
+    opened: Open, parts: Sequence[tuple[Otherwise | None, list[Statement]]], close: Close
 ) -> Iterator[Statement]:
-    if opened.condition is None:
-        yield from _loop(opened, parts[0][1])
+    if opened.counter is not None:
+        yield from _counted(opened, parts[0][1])
         return
+    if opened.repeats:
+        yield from _repeated(opened, parts[0][1], close)
+        return
+    if opened.condition is None:
+        raise SourceError("the block has no condition", opened.span)
     rest: Body | None = None
     for other, statements in reversed(parts[1:]):
         assert other is not None
@@ -105,17 +110,40 @@ def _made(
     yield If(opened.span, opened.condition, Body(tuple(parts[0][1])), rest)
 
 
-def _loop(opened: Open, inside: Sequence[Statement]) -> Iterator[Statement]:
-    """A counted loop by labels: its condition is asked before the first pass and behind each."""
+def _counted(opened: Open, inside: Sequence[Statement]) -> Iterator[Statement]:
+    """A counted loop: its condition is asked before the first pass and behind each."""
     counter, first, last = opened.counter, opened.first, opened.last
     assert counter is not None and first is not None and last is not None
-    span, key = opened.span, f"loop {opened.span.start}"
-    onwards: Expression = Operation(span, "+", (counter, Number(span, float(opened.step))))
-    beyond, within = (">", "<=") if opened.step > 0 else ("<", ">=")
+    span = opened.span
+    onwards: Expression = Operation(span, "+", (counter, Number(span, opened.step)))
+    sign = "<=" if opened.step > 0 else ">="
     yield Assign(span, counter, first)
-    yield If(span, Operation(span, beyond, (counter, last)), Body((Jump(span, f"{key} end"),)))
+    again = Operation(span, sign, (counter, last))
+    yield from _by_labels(span, again, [*inside, Assign(span, counter, onwards)], True)
+
+
+def _repeated(opened: Open, inside: Sequence[Statement], close: Close) -> Iterator[Statement]:
+    """``WHILE …``, ``REPEAT … UNTIL …``, and a loop without an end."""
+    if opened.condition is not None:
+        yield from _by_labels(opened.span, opened.condition, inside, True)
+    elif close.until is not None:
+        again = Operation(close.until.span, "NOT", (close.until,))
+        yield from _by_labels(opened.span, again, inside, False)
+    else:
+        yield from _by_labels(opened.span, None, inside, False)
+
+
+def _by_labels(
+    span: Span, again: Expression | None, inside: Sequence[Statement], first: bool
+) -> Iterator[Statement]:
+    """A loop; ``first``: whether its condition is asked before the first pass, too."""
+    key = f"loop {span.start}"
+    end = f"{key} end"
+    if first and again is not None:
+        never = Operation(again.span, "NOT", (again,))
+        yield If(span, never, Body((Jump(span, end),)))
     yield Label(span, key)
     yield from inside
-    yield Assign(span, counter, onwards)
-    yield If(span, Operation(span, within, (counter, last)), Body((Jump(span, key),)))
-    yield Label(span, f"{key} end")
+    back = Jump(span, key)
+    yield back if again is None else If(span, again, Body((back,)))
+    yield Label(span, end)

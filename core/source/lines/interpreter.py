@@ -22,12 +22,13 @@ from ..execution.endings import Loop
 from ..execution.flow import Flow
 from ..execution.limits import Meter
 from ..execution.outputs import Outputs
-from ..execution.provenance import MovePart, Reads, Source
+from ..execution.provenance import Reads, Source
 from ..execution.scopes import unknown_name
 from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
 from ..reading import ReadOptions
 from .analysis import Statements, expressions_of
+from .data import Data
 from .expressions import Datum, Expression, Number
 from .program import Grammar, LineProgram
 from .statements import (
@@ -42,12 +43,12 @@ from .statements import (
     Kept,
     Label,
     Numbers,
-    Operand,
     Pause,
     Return,
+    Set,
     Statement,
 )
-from .values import Literal, Snapshot, Unknown, Values
+from .values import Snapshot, Unknown, Values
 
 
 class _Jumped(Exception):
@@ -118,9 +119,9 @@ class _Interpreter:
         self._analysis = Analysis(self._tree)
         self._flow: Flow[Body] = Flow(self._analysis, proxy(self))
         self._values = Values(program.text_of, grammar, self.course, self.outputs)
-        for (word, number), numbers in program.data.items():
-            self._values.put_all(f"{word}[{number}]", numbers)
+        self._data = Data(program, grammar, self._values)
         self._computed: set[str] = set()
+        self._driven: Span | None = None
         self._reads = Reads()
         self._loops: dict[int, Body] = {}
 
@@ -145,7 +146,7 @@ class _Interpreter:
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
         """See `core.source.execution.flow.Host`."""
-        return Snapshot(self._values.registers, names)
+        return Snapshot(self._values, names)
 
     def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
         """None: what registers hold that others write is not known anyhow."""
@@ -229,7 +230,11 @@ class _Interpreter:
         elif isinstance(statement, Assign):
             self._assign(statement)
         elif isinstance(statement, AssignAll):
-            self._assign_all(statement)
+            self._data.assign_all(statement)
+        elif isinstance(statement, Set):
+            name = f"{statement.word} once" if statement.once else statement.word
+            self._data.hold(name, statement.value)
+            self._values.kinds[name] = statement.unit
         elif isinstance(statement, If):
             self._if(statement)
         elif isinstance(statement, Label):
@@ -308,11 +313,7 @@ class _Interpreter:
                 unknown = Unknown("a register whose number is not known")
                 registers.update(dict.fromkeys(registers, unknown))
             else:
-                source = None
-                if isinstance(statement.value, Number):
-                    span = statement.value.span
-                    source = Literal(span, name, (span,))
-                self._values.put(name, value, source)
+                self._data.hold(name, statement.value)
             return
         if name is None:
             self.outputs.forget()
@@ -320,39 +321,6 @@ class _Interpreter:
             self.outputs.write(name, None if isinstance(value, Unknown) else value)
         word = statement.target.word
         self._out.keep(statement.span, word, "outputs do not move the robot")
-
-    def _assign_all(self, statement: AssignAll) -> None:
-        name = self._values.name(statement.target)
-        if name is None:
-            raise SourceError(
-                "nobody knows which one this is: answer its number in the table [values] of the "
-                "answers",
-                statement.target.span,
-            )
-        count = self._grammar.vectors[statement.target.word]
-        if not statement.terms:
-            unknown = Unknown(f"{name}, which is {statement.reason}")
-            for k in range(count):
-                self._values.put(f"{name[:-1]},{k + 1}]", unknown)
-            return
-        try:
-            found = [(sign, *self._point(term)) for sign, term in statement.terms]
-        except SourceError as error:
-            for k in range(count):
-                self._values.put(f"{name[:-1]},{k + 1}]", Unknown(str(error)))
-            return
-        if len(found) == 1 and found[0][0] == 1.0:
-            _, numbers, sources = found[0]
-            whole = sources[0] if sources else None
-            if whole is not None and len(whole.numbers) == len(numbers) > 1:
-                sources = whole.each()
-            self._values.put_all(name, numbers, sources)
-            return
-        sums = (
-            sum(sign * numbers[k] for sign, numbers, _ in found)
-            for k in range(min(len(numbers) for _, numbers, _ in found))
-        )
-        self._values.put_all(name, Numbers.of(sums, found[0][1].kind))
 
     # ------------------------------------------------------------------------- moves
 
@@ -373,10 +341,16 @@ class _Interpreter:
             raise InputError(f"a move depends on {word}, and that on {value.reason}")
         return float(value)
 
-    def vector(self, word: str, number: int) -> Numbers:
+    def vector(self, word: str, number: int | None) -> Numbers:
         """See `Situation`."""
         nowhere = Span(self._program.file, 1, 1, 0, 0)
-        return self._values.all_of(Datum(nowhere, word, Number(nowhere, float(number))))
+        index = None if number is None else Number(nowhere, float(number))
+        return self._values.all_of(Datum(nowhere, word, index))
+
+    def note(self, message: str) -> None:
+        """See `Situation`."""
+        assert self._driven is not None
+        self.note_once("drive", message, self._driven)
 
     def computed(self, *parts: str) -> None:
         """See `Situation`."""
@@ -384,10 +358,11 @@ class _Interpreter:
 
     def _drive(self, statement: Drive) -> None:
         operands = (statement.target, statement.speed, statement.zone, statement.via)
-        found = [None if one is None else self._operand(one) for one in operands]
+        found = [None if one is None else self._data.operand(one) for one in operands]
         numbers = [Numbers() if one is None else one[0] for one in found]
         self._computed.clear()
         self._counted_on = False
+        self._driven = statement.span
         if not all(math.isfinite(number) for one in numbers for number in one):
             raise SourceError("a number is larger than controllers hold", statement.span)
         try:
@@ -410,37 +385,5 @@ class _Interpreter:
         self._standing = (*own, *(self._standing if self._counted_on else ()))
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
-
-    def _operand(self, operand: Operand) -> tuple[Numbers, MovePart]:
-        """The numbers of a part of a move, and where they stand."""
-        if operand.point is None:
-            numbers = Numbers(self._values.number(one) for one in operand.numbers)
-            sources = tuple(
-                Literal(one.span, None, (one.span,)) if isinstance(one, Number) else None
-                for one in operand.numbers
-            ) or (Literal(operand.span, None, ()),)
-            return numbers, MovePart(operand.span, sources if any(sources) else ())
-        numbers, sources = self._point(operand.point)
-        point = sources[:1] if len({id(source) for source in sources}) == 1 else sources
-        return numbers, MovePart(operand.span, point if any(sources) else ())
-
-    def _point(self, datum: Datum) -> tuple[Numbers, tuple[Literal | None, ...]]:
-        """The numbers of a point, or of a datum of several, and the literal of each."""
-        if datum.word in self._grammar.vectors:
-            numbers = self._values.all_of(datum)
-            own = (self._values.name(datum) or "").removesuffix("]")
-            every = [self._values.sources.get(f"{own},{k + 1}]") for k in range(len(numbers))]
-            return numbers, tuple(every)
-        assert datum.index is not None
-        index = self._values.number(datum.index)
-        if not index.is_integer():
-            raise SourceError("points have whole numbers", datum.span)
-        key = datum.span.file, datum.word, int(index)
-        point = self._program.points.get(key)
-        text = f"{key[1]}[{key[2]}]"
-        if point is None:
-            known = [f"{w}[{n}]" for file, w, n in self._program.points if file == key[0]]
-            raise SourceError(unknown_name("point", text, known, "define it"), datum.span)
-        numbers = Numbers.of((self._values.number(one) for one in point.numbers), point.kind)
-        spans = tuple(one.span if isinstance(one, Number) else None for one in point.numbers)
-        return numbers, (Literal(point.span, text, spans),) * max(1, len(numbers))
+        for setting in self._grammar.settings:
+            self._values.registers.pop(f"{setting.word} once", None)

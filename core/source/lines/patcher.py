@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields
 from functools import partial
@@ -86,7 +87,7 @@ class _Literals:
         if len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
             return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
         texts = {
-            span: self.text(span) if before == value else self._number(value)
+            span: self.text(span) if before == value else self._said(use, span, before, value)
             for span, before, value in zip(spans, old, new, strict=True)
             if span is not None
         }
@@ -95,6 +96,18 @@ class _Literals:
             for span, before, value in zip(spans, old, new, strict=True)
         )
         return Wish(texts, complete=not missing)
+
+    def _said(self, use: Use, span: Span, before: float, value: float) -> str:
+        """A number in the unit that it has in the text, and below an override that is on it:
+        speeds and zones grow as their numbers do."""
+        grows = use.kind in (UseKind.SPEED, UseKind.ZONE) and before != 0
+        try:
+            stated = float(self.text(span)) if grows else before
+        except ValueError:
+            stated = before
+        if math.isclose(stated, before, rel_tol=1e-9) or stated == 0:
+            return self._number(value)
+        return self._number(stated * (value / before))
 
 
 def _same_words(use: Use) -> bool:

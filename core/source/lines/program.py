@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Protocol
 
 from ...errors import InputError, SourceError, Span
 from ..text.files import SourceText, unbroken
 from .blocks import nested
-from .expressions import Datum
+from .expressions import Datum, Value
+from .settings import Settings
 from .statements import Body, Label, Line, NumberedPoint, Numbers, Routine, Statement
 
 _LINE = re.compile(r"[^\r\n]+")
 
 
-class Grammar(Protocol):
+Said = Statement | Sequence[Statement] | None
+"""What a line says: one statement, several, or nothing."""
+
+
+class Grammar:
     """What a language takes a line for.
 
     Attributes:
@@ -25,20 +29,22 @@ class Grammar(Protocol):
         outputs: words of outputs; all other words are asked of the answers.
         vectors: words of registers that have several numbers, and how many.
         argument: word of the registers that hold a routine's arguments.
+        settings: what holds for the moves behind it until it is set again.
     """
 
-    registers: frozenset[str]
-    outputs: frozenset[str]
+    registers: Container[str] = frozenset()
+    outputs: Container[str] = frozenset()
     vectors: Mapping[str, int] = MappingProxyType({})
     argument: str = ""
+    settings: Settings = Settings()
 
-    def statement(self, line: Line) -> Statement | None:
+    def statement(self, line: Line) -> Said:
         """What a line says; None for nothing, a comment.
 
         Raises:
             InputError, ValueError: it says nothing that there is; the line is named by the caller.
         """
-        ...
+        raise NotImplementedError
 
 
 @dataclass(frozen=True)
@@ -49,16 +55,17 @@ class LineProgram:
         file: the name of the first.
         texts: of the files, by name.
         routines: by lower-case name; the lines before the first named one are called "".
-        points: numbered points by file and `point_key`.
-        data: what registers of several numbers hold at first, by word and number.
+        points: points by file and `point_key`.
+        data: what registers hold at first, by word and number; of one that there is once the number
+            is None.
         own: keys of the routines of the first file that have names, in order.
     """
 
     file: str
     texts: Mapping[str, str]
     routines: Mapping[str, Body]
-    points: Mapping[tuple[str, str, int], NumberedPoint] = field(default_factory=dict)
-    data: Mapping[tuple[str, int], Numbers] = field(default_factory=dict)
+    points: Mapping[tuple[str, str, int | None], NumberedPoint] = field(default_factory=dict)
+    data: Mapping[tuple[str, int | None], Numbers | Value] = field(default_factory=dict)
     own: tuple[str, ...] = ()
 
     def text_of(self, span: Span) -> str:
@@ -106,10 +113,9 @@ def read_lines(
     """
     source = SourceText(unbroken(text), file)
     routines: dict[str, list[Statement]] = {"": []}
-    points: dict[tuple[str, str, int], NumberedPoint] = {}
+    points: dict[tuple[str, str, int | None], NumberedPoint] = {}
     own, labels = routines[""], set[str]()
-    for line in lines(source):
-        statement = _statement(line, grammar, name)
+    for line, statement in _statements(source, grammar, name, lines):
         if isinstance(statement, Routine):
             if statement.name.lower() in routines:
                 raise SourceError(f"there are two routines {statement.name}", line.span)
@@ -119,7 +125,7 @@ def read_lines(
             if key in points:
                 raise SourceError(f"there are two points {line.text.split()[0]}", line.span)
             points[key] = statement
-        elif statement is not None:
+        else:
             if isinstance(statement, Label) and statement.name in labels:
                 raise SourceError(f"there are two labels {statement.name}", line.span)
             labels |= {statement.name} if isinstance(statement, Label) else set()
@@ -129,20 +135,36 @@ def read_lines(
     return LineProgram(file, {file: text}, bodies, points, own=named)
 
 
-def point_key(datum: Datum) -> tuple[str, int]:
-    """Under which a point with a written number is found.
+def point_key(datum: Datum) -> tuple[str, int | None]:
+    """Under which a point is found, that has a written number or none.
 
     Raises:
-        SourceError: its number is computed, or none.
+        SourceError: its number is computed.
     """
+    if datum.index is None:
+        return datum.word, None
     value = getattr(datum.index, "value", None)
     if isinstance(value, bool) or not isinstance(value, float) or not value.is_integer():
         raise SourceError("a point that is defined has a whole number", datum.span)
     return datum.word, int(value)
 
 
-def _statement(line: Line, grammar: Grammar, name: str) -> Statement | None:
-    try:
-        return grammar.statement(line)
-    except (InputError, ValueError) as error:
-        raise SourceError(f"{line.text!r} is no {name} statement: {error}", line.span) from None
+def _statements(
+    source: SourceText,
+    grammar: Grammar,
+    name: str,
+    lines: Callable[[SourceText], Iterable[Line]],
+) -> Iterator[tuple[Line, Statement]]:
+    for line in lines(source):
+        try:
+            said = grammar.statement(line)
+        except (InputError, ValueError) as error:
+            raise SourceError(f"{line.text!r} is no {name} statement: {error}", line.span) from None
+        yield from ((line, one) for one in several(said))
+
+
+def several(said: Said) -> tuple[Statement, ...]:
+    """What a line says, as statements."""
+    if said is None:
+        return ()
+    return tuple(said) if isinstance(said, Sequence) else (said,)

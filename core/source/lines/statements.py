@@ -23,7 +23,8 @@ class Numbers(tuple[float, ...]):
     """The numbers of a part of a move.
 
     Attributes:
-        kind: what the point that they are of is beside them (`NumberedPoint.kind`).
+        kind: what the point that they are of is beside them (`NumberedPoint.kind`); of numbers that
+            settings hold, the unit of each.
     """
 
     kind: Any = None
@@ -60,12 +61,17 @@ class Situation(Protocol):
         """
         ...
 
-    def vector(self, word: str, number: int) -> Numbers:
-        """The numbers of a datum that has several: those of ``PR[2]``.
+    def vector(self, word: str, number: int | None) -> Numbers:
+        """The numbers of a datum that has several: those of ``PR[2]``; of one that there is once,
+        its number is None.
 
         Raises:
             SourceError: they are not known.
         """
+        ...
+
+    def note(self, message: str) -> None:
+        """Say something about this line to who reads the program, once for all its passes."""
         ...
 
     def computed(self, *parts: str) -> None:
@@ -103,17 +109,22 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """A part of a move: a numbered point, or numbers at the move.
+    """A part of a move: a point, or numbers at the move or held by settings.
 
     Args:
-        span: of it.
-        numbers: one expression each; empty if it is a point.
+        span: of it; where nothing stands at the move, of where words of its own would be put.
+        numbers: one expression each; empty if it is a point. A datum stands for what it was set
+            to: a register, a setting (`core.source.lines.settings`).
         point: the point.
     """
 
     span: Span
     numbers: tuple[Expression, ...] = ()
     point: Datum | None = None
+
+
+Build = Callable[[Numbers, Numbers, Numbers, Numbers, Situation], Move]
+"""A move of the numbers of its target, speed, zone and auxiliary point, and of what else is so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +141,7 @@ class Drive:
     target: Operand
     speed: Operand
     zone: Operand
-    build: Callable[[Numbers, Numbers, Numbers, Numbers, Situation], Move]
+    build: Build
     via: Operand | None = None
 
 
@@ -141,6 +152,23 @@ class Assign:
     span: Span
     target: Datum
     value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Set:
+    """``SPEED 30 MM/S ALWAYS``: a number that the moves behind it have.
+
+    Args:
+        word: of the setting, in capitals; a datum of this word is what it holds.
+        unit: that stands behind the number.
+        once: whether it holds for the next move alone.
+    """
+
+    span: Span
+    word: str
+    value: Expression
+    unit: str = ""
+    once: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,10 +268,10 @@ class Kept:
 
 @dataclass(frozen=True, slots=True)
 class NumberedPoint:
-    """A numbered point.
+    """A point with a number, or with a name alone.
 
     Args:
-        datum: its word and number.
+        datum: its word and number; the index of one that is called by its name is None.
         numbers: of it.
         kind: what it is beside its numbers: in which frames, joints or a pose.
     """
@@ -269,6 +297,8 @@ class Open:
     Args:
         condition: of a block that is carried out if it holds.
         counter, last, step: of one that is repeated: what counts from ``first`` to ``last``.
+        repeats: whether it is repeated while the condition holds; without one, until that of its
+            `Close` does.
     """
 
     span: Span
@@ -276,7 +306,8 @@ class Open:
     counter: Datum | None = None
     first: Expression | None = None
     last: Expression | None = None
-    step: int = 1
+    step: float = 1.0
+    repeats: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,15 +326,21 @@ class Otherwise:
 
 @dataclass(frozen=True, slots=True)
 class Close:
-    """A block ends."""
+    """A block ends.
+
+    Args:
+        until: of one that is repeated, what ends it.
+    """
 
     span: Span
+    until: Expression | None = None
 
 
 Statement = (
     Drive
     | Assign
     | AssignAll
+    | Set
     | Open
     | Otherwise
     | Close

@@ -51,13 +51,14 @@ class Unknown:
 class Snapshot:
     """Registers as they are now; see `core.source.execution.flow.Snapshot`."""
 
-    def __init__(self, values: dict[str, Value | Unknown], names: frozenset[str] | None) -> None:
+    def __init__(self, values: Values, names: frozenset[str] | None) -> None:
         self._values = values
-        self._names = sorted(values if names is None else names)
+        self._names = sorted(values.registers if names is None else names)
         self._before = self._now()
 
-    def _now(self) -> list[Value | Unknown | None]:
-        return [self._values.get(name) for name in self._names]
+    def _now(self) -> list[tuple[Value | Unknown | None, Any]]:
+        values = self._values
+        return [(values.registers.get(name), values.kinds.get(name)) for name in self._names]
 
     def changed(self) -> bool:
         """Whether one has another value now."""
@@ -76,7 +77,7 @@ class Values:
     Attributes:
         registers: by name, ``R[1]``, ``PR[1,2]``.
         sources: the literals that registers have their values from, by name.
-        kinds: what data of several numbers are beside them, by name.
+        kinds: what data of several numbers are beside them, and units of settings, by name.
     """
 
     def __init__(
@@ -108,6 +109,13 @@ class Values:
             numbers.append(self.number(element))
         return Numbers.of(numbers, self.kinds.get(self.name(datum) or ""))
 
+    def source_of(self, expression: Expression) -> Literal | None:
+        """The literal that an expression has its value from as it stands; None if none."""
+        if isinstance(expression, Number):
+            return Literal(expression.span, None, (expression.span,))
+        name = self.name(expression) if isinstance(expression, Datum) else None
+        return None if name is None else self.sources.get(name)
+
     def put(self, name: str, value: Value | Unknown, source: Literal | None = None) -> None:
         """Give a register a value; ``source``: the literal that states it."""
         self.registers[name] = value
@@ -115,9 +123,8 @@ class Values:
 
     def put_all(self, name: str, numbers: Numbers, sources: Sequence[Literal | None] = ()) -> None:
         """Give a datum all its numbers."""
-        own = name.removesuffix("]")
         for k, value in enumerate(numbers):
-            self.put(f"{own},{k + 1}]", value, sources[k] if sources else None)
+            self.put(element(name, k), value, sources[k] if sources else None)
         self.kinds[name] = numbers.kind
 
     def number(self, expression: Expression) -> float:
@@ -172,7 +179,8 @@ class Values:
         text = self._text_of(datum.span)
         if name is None:
             return Unknown(f"{text}, whose number is not known")
-        if datum.word in self._grammar.registers and name in self.registers:
+        own = datum.word in self._grammar.registers or datum.word in self._grammar.settings
+        if own and name in self.registers:
             return self.registers[name]
         if datum.word in self._grammar.outputs and not self._course.changing(name):
             held = self.outputs.value(name)
@@ -185,10 +193,11 @@ class Values:
 
     def name(self, datum: Datum) -> str | None:
         """Of a datum, ``R[1]``, ``PR[1,2]``; None if its number is not known."""
-        if datum.index is None:
-            return datum.word
         numbers: list[str] = []
-        parts = (datum.index,) if datum.element is None else (datum.index, datum.element)
+        parts = [part for part in (datum.index, datum.element) if part is not None]
+        if not parts:
+            once = f"{datum.word} once"
+            return once if once in self.registers else datum.word
         for part in parts:
             index = self.value(part)
             if isinstance(index, Unknown):
@@ -197,6 +206,11 @@ class Values:
                 raise SourceError(f"{datum.word} has whole numbers", datum.span)
             numbers.append(str(int(index)))
         return f"{datum.word}[{','.join(numbers)}]"
+
+
+def element(name: str, k: int) -> str:
+    """The name of a number of a datum that has several, counted from 0."""
+    return f"{name[:-1]},{k + 1}]" if name.endswith("]") else f"{name}[{k + 1}]"
 
 
 def _answered(answer: Answer, name: str, span: Span) -> Value:

@@ -195,9 +195,15 @@ def _differing_part(one: Move, other: Move, tolerance: float) -> str | None:
 
 def _apply(reading: Reading, edits: Iterable[Edit]) -> Files:
     by_file: dict[str, dict[tuple[int, int], Edit]] = {}
+    put_in: dict[tuple[str, int], list[Edit]] = {}
     for edit in edits:
         place = (edit.span.start, edit.span.end)
-        known = by_file.setdefault(edit.span.file, {}).setdefault(place, edit)
+        own = by_file.setdefault(edit.span.file, {})
+        if edit.span.start == edit.span.end and _also(edit, put_in):
+            every = put_in[edit.span.file, edit.span.start]
+            own[place] = replace(edit, text="".join(one.text for one in every))
+            continue
+        known = own.setdefault(place, edit)
         if known.text != edit.text:
             raise InputError(
                 f"{edit.span}: moves {known.move + 1} and {edit.move + 1} read the same number and "
@@ -208,6 +214,18 @@ def _apply(reading: Reading, edits: Iterable[Edit]) -> Files:
         name: _edited(reading, name, list(places.values())) for name, places in by_file.items()
     }
     return {n: file for n, file in files.items() if file.text != reading.files[n].text}
+
+
+def _also(edit: Edit, put_in: dict[tuple[str, int], list[Edit]]) -> bool:
+    """Whether what a move has put in at a place stands beside what is put in there already: its
+    speed beside its zone, or the same of another pass."""
+    every = put_in.setdefault((edit.span.file, edit.span.start), [])
+    if any(one.text == edit.text for one in every):
+        return True
+    if every and all(one.move != edit.move for one in every):
+        return False
+    every.append(edit)
+    return True
 
 
 def _edited(reading: Reading, name: str, edits: list[Edit]) -> SourceFile:

@@ -47,3 +47,8 @@ def _around(guess: float) -> Iterator[float]:
 def plain(value: float) -> str:
     """The shortest decimal without exponent that is this double; whole numbers without a point."""
     return "0" if value == 0 else str(np.format_float_positional(value, trim="-"))
+
+
+def nine_decimals(value: float) -> str:
+    """A decimal of nine digits behind the point at most: a nanometre of m, a picometre of mm."""
+    return plain(round(value, 9))

@@ -19,7 +19,7 @@ from flyby.core.program.target import JointTarget
 from flyby.core.source.lines.expressions import Datum, parse
 from flyby.core.source.lines.files import with_called
 from flyby.core.source.lines.interpreter import run_lines
-from flyby.core.source.lines.program import read_lines
+from flyby.core.source.lines.program import Grammar, Said, read_lines
 from flyby.core.source.lines.statements import (
     Assign,
     AssignAll,
@@ -34,21 +34,19 @@ from flyby.core.source.lines.statements import (
     Pause,
     Routine,
     Situation,
-    Statement,
 )
 from flyby.core.source.reading import ReadOptions
 from flyby.core.source.write.numbering import Numbering
 
 
-class Small:
+class Small(Grammar):
     """``IF …``, ``ELSE``, ``ENDIF``, ``CALL name …``, ``WAIT …``, ``GO V[1]``, assignments."""
 
     registers = frozenset({"R", "V", "A", "SHIFT"})
-    outputs: frozenset[str] = frozenset()
     vectors: Mapping[str, int] = MappingProxyType({"V": 2})
     argument = "A"
 
-    def statement(self, line: Line) -> Statement | None:
+    def statement(self, line: Line) -> Said:
         word, _, rest = line.text.partition(" ")
         begin, span = line.end - len(rest), line.span
         if word == "ROUTINE":

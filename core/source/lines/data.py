@@ -1,0 +1,118 @@
+"""Registers, settings and points of a run, and the literals that their numbers stand in."""
+
+from __future__ import annotations
+
+from ...errors import SourceError
+from ..execution.provenance import MovePart
+from ..execution.scopes import unknown_name
+from .expressions import Datum, Expression, Number
+from .program import Grammar, LineProgram
+from .statements import AssignAll, Numbers, Operand
+from .values import Literal, Unknown, Values, element
+
+
+class Data:
+    """What the statements of one run set, and its moves read.
+
+    Args:
+        program: whose points, and what registers hold at first.
+        grammar: of the language.
+        values: of the run.
+    """
+
+    def __init__(self, program: LineProgram, grammar: Grammar, values: Values) -> None:
+        self._program = program
+        self._grammar = grammar
+        self.values = values
+        for setting in grammar.settings:
+            if setting.initial is not None:
+                values.put(setting.word, setting.initial)
+                values.kinds[setting.word] = setting.unit
+        for (word, number), held in program.data.items():
+            name = word if number is None else f"{word}[{number}]"
+            if isinstance(held, Numbers):
+                values.put_all(name, held)
+            else:
+                values.put(name, held)
+
+    def hold(self, name: str, expression: Expression) -> None:
+        """Give a register the value of an expression, and the literal that states it."""
+        source = self.values.source_of(expression)
+        if isinstance(expression, Number):
+            source = Literal(expression.span, name.removesuffix(" once"), (expression.span,))
+        self.values.put(name, self.values.value(expression), source)
+
+    def assign_all(self, statement: AssignAll) -> None:
+        name = self.values.name(statement.target)
+        if name is None:
+            raise SourceError(
+                "nobody knows which one this is: answer its number in the table [values] of the "
+                "answers",
+                statement.target.span,
+            )
+        count = self._grammar.vectors[statement.target.word]
+        if not statement.terms:
+            unknown = Unknown(f"{name}, which is {statement.reason}")
+            for k in range(count):
+                self.values.put(element(name, k), unknown)
+            return
+        try:
+            found = [(sign, *self.point(term)) for sign, term in statement.terms]
+        except SourceError as error:
+            for k in range(count):
+                self.values.put(element(name, k), Unknown(str(error)))
+            return
+        if len(found) == 1 and found[0][0] == 1.0:
+            _, numbers, sources = found[0]
+            whole = sources[0] if sources else None
+            if whole is not None and len(whole.numbers) == len(numbers) > 1:
+                sources = whole.each()
+            self.values.put_all(name, numbers, sources)
+            return
+        sums = (
+            sum(sign * numbers[k] for sign, numbers, _ in found)
+            for k in range(min(len(numbers) for _, numbers, _ in found))
+        )
+        self.values.put_all(name, Numbers.of(sums, found[0][1].kind))
+
+    def operand(self, operand: Operand) -> tuple[Numbers, MovePart]:
+        """The numbers of a part of a move, and where they stand."""
+        if operand.point is None:
+            units = tuple(self._unit(one) for one in operand.numbers)
+            numbers = Numbers.of(map(self.values.number, operand.numbers), units)
+            sources = tuple(map(self.values.source_of, operand.numbers)) or (
+                Literal(operand.span, None, ()),
+            )
+            return numbers, MovePart(operand.span, sources if any(sources) else ())
+        numbers, sources = self.point(operand.point)
+        point = sources[:1] if len({id(source) for source in sources}) == 1 else sources
+        return numbers, MovePart(operand.span, point if any(sources) else ())
+
+    def _unit(self, one: Expression) -> str:
+        held = isinstance(one, Datum) and one.word in self._grammar.settings
+        name = self.values.name(one) if isinstance(one, Datum) and held else None
+        return "" if name is None else self.values.kinds.get(name, "")
+
+    def point(self, datum: Datum) -> tuple[Numbers, tuple[Literal | None, ...]]:
+        """The numbers of a point, or of a datum of several, and the literal of each."""
+        if datum.word in self._grammar.vectors:
+            numbers = self.values.all_of(datum)
+            own = self.values.name(datum) or ""
+            every = [self.values.sources.get(element(own, k)) for k in range(len(numbers))]
+            return numbers, tuple(every)
+        index = None if datum.index is None else self.values.number(datum.index)
+        if index is not None and not index.is_integer():
+            raise SourceError("points have whole numbers", datum.span)
+        key = datum.span.file, datum.word, None if index is None else int(index)
+        point = self._program.points.get(key)
+        text = _point_name(*key[1:])
+        if point is None:
+            known = [_point_name(*at[1:]) for at in self._program.points if at[0] == key[0]]
+            raise SourceError(unknown_name("point", text, known, "define it"), datum.span)
+        numbers = Numbers.of((self.values.number(one) for one in point.numbers), point.kind)
+        spans = tuple(one.span if isinstance(one, Number) else None for one in point.numbers)
+        return numbers, (Literal(point.span, text, spans),) * max(1, len(numbers))
+
+
+def _point_name(word: str, number: int | None) -> str:
+    return word if number is None else f"{word}[{number}]"

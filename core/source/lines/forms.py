@@ -1,0 +1,296 @@
+"""A grammar as a table: for each form of line a pattern, and what it says."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+from ...errors import InputError
+from .expressions import USUAL, Datum, Expression, Number, Operation, Spelling, Truth, parse
+from .program import Grammar, Said, several
+from .statements import (
+    Assign,
+    Body,
+    Call,
+    Close,
+    End,
+    If,
+    Jump,
+    Kept,
+    Label,
+    Line,
+    Open,
+    Operand,
+    Otherwise,
+    Pause,
+    Return,
+    Routine,
+    Statement,
+)
+
+Found = re.Match[str]
+Form = Callable[["FormGrammar", Line, Found], Said]
+
+
+class FormGrammar(Grammar):
+    """A grammar whose lines have forms: the first whose pattern fits the whole line counts.
+
+    A form is called by the name of the method that says what it means. The groups of its pattern
+    are those that the method names; their texts are read as expressions by the `Spelling`. A
+    language adds methods of its own, for motions and positions first of all.
+
+    Attributes:
+        forms: patterns by the name of a method, in the order in which they are tried; a ``.`` and
+            anything behind it tell forms of one method apart. Upper and lower case are the same.
+        spelling: of expressions.
+        driving: what begins a motion: lines that begin so and fit no form are refused, since they
+            may move the robot; other lines are kept as text.
+        stopping: names of kept instructions at which the robot stops.
+        longest: characters of a line.
+    """
+
+    forms: ClassVar[Mapping[str, str]] = {}
+    spelling: Spelling = USUAL
+    driving: re.Pattern[str] = re.compile(r"(?!)")
+    stopping: frozenset[str] = frozenset()
+    longest: int = 1000
+
+    def __init__(self) -> None:
+        self._selected: list[tuple[Expression, bool]] = []
+        self._table = _table(type(self))
+
+    def statement(self, line: Line) -> Said:
+        """See `Grammar`.
+
+        Raises:
+            InputError, ValueError: it says nothing that there is.
+        """
+        if line.end - line.start > self.longest:
+            raise InputError(f"a line has {self.longest} characters at most")
+        said = self.settings.read(line, self.spelling)
+        if said is not None:
+            return said
+        for pattern, form in self._table:
+            found = pattern.fullmatch(line.source.text, line.start, line.end)
+            if found is not None:
+                return form(self, line, found)
+        if self.driving.match(line.text):
+            raise InputError("this form of a motion is not known, and it may move the robot")
+        return self.kept(line)
+
+    def parse(self, line: Line, found: Found, group: str) -> Expression:
+        """The expression in a group."""
+        return parse(line.source, *found.span(group), self.spelling)
+
+    def datum(self, line: Line, found: Found, group: str) -> Datum:
+        """The datum in a group.
+
+        Raises:
+            InputError: something else stands there.
+        """
+        one = self.parse(line, found, group)
+        if not isinstance(one, Datum):
+            raise InputError(f"{found[group]} is no datum")
+        return one
+
+    def point_at(self, line: Line, found: Found, group: str) -> Operand:
+        """The point in a group, as a part of a move."""
+        datum = self.datum(line, found, group)
+        return Operand(datum.span, point=datum)
+
+    def numbers_at(self, line: Line, found: Found, whole: str, *groups: str) -> Operand:
+        """The numbers in those of the groups that a move has, as a part of it.
+
+        Args:
+            whole: the group in whose place words of its own would be put.
+        """
+        given = (group for group in groups if found[group])
+        span = line.source.span(*found.span(whole))
+        return Operand(span, tuple(self.parse(line, found, group) for group in given))
+
+    def _action(self, line: Line, found: Found, group: str = "action") -> Body:
+        start, end = found.span(group)
+        done = several(self.statement(replace(line, start=start, end=end)))
+        if not done:
+            raise InputError("an action should follow the condition")
+        return Body(done)
+
+    # --------------------------------------------------------- what forms may be called
+
+    def nothing(self, line: Line, found: Found) -> Said:
+        """A comment, or what says nothing that counts."""
+        return None
+
+    def kept(self, line: Line, found: Found | None = None) -> Statement:
+        """What is not carried out."""
+        word = re.match(r"[\w.$#]+", line.text)
+        name = word[0] if word else line.text[:12]
+        stops = name.upper() in self.stopping
+        return Kept(line.span, name, "what it does is not known", stops)
+
+    def harmless(self, line: Line, found: Found) -> Statement:
+        """What does not move the robot, and is kept."""
+        word = re.match(r"[\w.$#]+", line.text)
+        return Kept(line.span, word[0] if word else line.text[:12], "it does not move the robot")
+
+    def refused(self, line: Line, found: Found) -> Said:
+        """What is known to move the robot, and is not emulated."""
+        raise InputError("it may move the robot, and is not emulated")
+
+    def routine(self, line: Line, found: Found) -> Statement:
+        """``name``: the lines behind it are its."""
+        return Routine(line.span, found["name"])
+
+    def label(self, line: Line, found: Found) -> Said:
+        """``name``, and in ``action`` what stands on its line, if that has the group."""
+        own = Label(line.span, found["name"].upper())
+        rest = found.groupdict().get("action")
+        return (own, *self._action(line, found).statements) if rest else own
+
+    def jump(self, line: Line, found: Found) -> Statement:
+        """To ``name``; in ``condition`` whether, if that has the group."""
+        jump = Jump(line.span, found["name"].upper())
+        if not found.groupdict().get("condition"):
+            return jump
+        return If(line.span, self.parse(line, found, "condition"), Body((jump,)))
+
+    def call(self, line: Line, found: Found) -> Statement:
+        """``name``, with ``arguments`` between commas; texts in quotes are left out."""
+        given, arguments = found.groupdict().get("arguments") or "", []
+        at = found.start("arguments") if given else 0
+        for part in given.split(",") if given.strip() else []:
+            if part.strip()[:1] not in "'\"":
+                span = at, at + len(part)
+                arguments.append(parse(line.source, *span, self.spelling))
+            at += len(part) + 1
+        return Call(line.span, found["name"], tuple(arguments))
+
+    def returned(self, line: Line, found: Found) -> Statement:
+        """The routine ends."""
+        return Return(line.span)
+
+    def end(self, line: Line, found: Found) -> Statement:
+        """The program ends."""
+        return End(line.span)
+
+    def when(self, line: Line, found: Found) -> Statement:
+        """``condition`` and ``action`` on one line."""
+        condition = self.parse(line, found, "condition")
+        return If(line.span, condition, self._action(line, found))
+
+    def opened(self, line: Line, found: Found) -> Statement:
+        """A block begins that is carried out on a ``condition``."""
+        return Open(line.span, self.parse(line, found, "condition"))
+
+    def otherwise(self, line: Line, found: Found) -> Statement:
+        """What is done else; in ``condition`` whether, if that has the group."""
+        asked = found.groupdict().get("condition")
+        return Otherwise(line.span, self.parse(line, found, "condition") if asked else None)
+
+    def closed(self, line: Line, found: Found) -> Statement:
+        """A block ends."""
+        return Close(line.span)
+
+    def selected(self, line: Line, found: Found) -> Said:
+        """``datum`` is compared with the cases that follow; with the first, if it has the group
+        ``value``, and an ``action``."""
+        datum = self.parse(line, found, "datum")
+        self._selected.append((datum, False))
+        return self.case(line, found) if found.groupdict().get("value") else None
+
+    def case(self, line: Line, found: Found) -> Statement:
+        """A case of one ``value`` or of several, or of none of them; what is done stands in
+        ``action``, or on the lines behind it.
+
+        Raises:
+            InputError: nothing is compared here.
+        """
+        if not self._selected:
+            raise InputError("nothing that is compared stands before it")
+        datum, begun = self._selected[-1]
+        self._selected[-1] = datum, True
+        condition = None
+        if found.groupdict().get("value"):
+            condition = self.parse(line, found, "value")
+            condition = Operation(condition.span, "=", (datum, condition))
+        action = found.groupdict().get("action")
+        if action is None:
+            return _case(line, condition, begun)
+        body = self._action(line, found)
+        if not begun:
+            assert condition is not None
+            return If(line.span, condition, body)
+        return Otherwise(line.span, condition, body.statements[0])
+
+    def deselected(self, line: Line, found: Found) -> Said:
+        """The last case ends."""
+        begun = self._selected.pop()[1] if self._selected else True
+        return Close(line.span) if begun else None
+
+    def counted(self, line: Line, found: Found) -> Statement:
+        """A ``counter`` goes from ``first`` to ``last`` by ``step``, downwards if there is a group
+        ``down``."""
+        parts = found.groupdict()
+        step = -1.0 if parts.get("down") else 1.0
+        if parts.get("step"):
+            given = self.parse(line, found, "step")
+            if not isinstance(given, Number) or given.value == 0:
+                raise InputError("a loop counts by a number that is written out")
+            step = given.value
+        return Open(
+            line.span,
+            counter=self.datum(line, found, "counter"),
+            first=self.parse(line, found, "first"),
+            last=self.parse(line, found, "last"),
+            step=step,
+        )
+
+    def repeated(self, line: Line, found: Found) -> Statement:
+        """A loop begins, while a ``condition`` holds if it has one."""
+        asked = found.groupdict().get("condition")
+        condition = self.parse(line, found, "condition") if asked else None
+        return Open(line.span, condition, repeats=True)
+
+    def until(self, line: Line, found: Found) -> Statement:
+        """A loop ends, when a ``condition`` holds."""
+        return Close(line.span, self.parse(line, found, "condition"))
+
+    def wait(self, line: Line, found: Found) -> Statement:
+        """A ``time``, s, or a ``condition`` that holds."""
+        if found.groupdict().get("time"):
+            return Pause(line.span, self.parse(line, found, "time"))
+        return Pause(line.span, condition=self.parse(line, found, "condition"))
+
+    def assigned(self, line: Line, found: Found) -> Statement:
+        """A ``target`` becomes a ``value``; what is no register and no output is kept."""
+        target = self.datum(line, found, "target")
+        if target.word not in self.registers and target.word not in self.outputs:
+            return Kept(line.span, target.word, "it does not move the robot")
+        return Assign(line.span, target, self.parse(line, found, "value"))
+
+    def switched(self, line: Line, found: Found) -> Statement:
+        """An output ``target`` is turned on, or off if there is a group ``off``."""
+        target = self.datum(line, found, "target")
+        return Assign(line.span, target, Truth(line.span, not found.groupdict().get("off")))
+
+
+def _case(line: Line, condition: Expression | None, begun: bool) -> Statement:
+    if begun:
+        return Otherwise(line.span, condition)
+    if condition is None:
+        raise InputError("a case with a value should stand first")
+    return Open(line.span, condition)
+
+
+def _table(kind: type[FormGrammar]) -> list[tuple[re.Pattern[str], Form]]:
+    """Patterns, and what they mean, of a language; each is made once."""
+    made: list[tuple[re.Pattern[str], Form]] | None = kind.__dict__.get("_made")
+    if made is None:
+        made = [
+            (re.compile(pattern, re.IGNORECASE | re.DOTALL), getattr(kind, name.partition(".")[0]))
+            for name, pattern in kind.forms.items()
+        ]
+        kind._made = made  # type: ignore[attr-defined]
+    return made

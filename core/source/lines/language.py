@@ -1,0 +1,168 @@
+"""Reader, writer and patcher of a language of one statement a line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Protocol
+
+from ...dialect import Dialect
+from ...errors import InputError
+from ...language import Sources
+from ...program.move import Move, Opaque, Wait
+from ...program.program import Program
+from ...program.target import JointTarget, PoseTarget
+from ...robot.model import Robot
+from ..patch.edits import Edit
+from ..patch.uses import MovePart, Use, UseKind
+from ..reading import Files, ReadOptions, read_with
+from ..text.files import SourceFile, SourceText
+from ..text.numerals import nine_decimals
+from ..write.options import OpaqueStyle, PatcherOptions, WriterOptions
+from ..write.refusals import check_said
+from ..write.statements import lines_of_statements
+from .files import with_called
+from .interpreter import run_lines
+from .patcher import patch_lines
+from .positions import PositionForm
+from .program import Grammar, LineProgram, plain_lines, read_lines
+from .statements import Line
+
+
+class LineWriter(Protocol):
+    """Writes one program; see `LineLanguage.writer`."""
+
+    def move(self, move: Move) -> Iterable[str]:
+        """The lines of a move, and what must be said before it."""
+        ...
+
+    def wait(self, wait: Wait) -> str:
+        """The line of a wait."""
+        ...
+
+    def text(self, name: str, lines: list[str]) -> str:
+        """The whole file of the lines of all statements."""
+        ...
+
+
+class LineLanguage:
+    """A language; its own file says what is peculiar to it.
+
+    Attributes:
+        name: for messages.
+        suffix: of the files that it writes.
+        dialect: what it has words for.
+        positions: how it says positions.
+        called: in a text, names of the programs that it calls, whose files stand beside; None for
+            programs in one file.
+        always: names of files, in lower case, that are read wherever they stand beside.
+    """
+
+    name: str
+    suffix: str
+    dialect: Dialect
+    positions: PositionForm
+    called: re.Pattern[str] | None = None
+    always: tuple[str, ...] = ()
+
+    # ------------------------------------------------------------ what a language says
+
+    def grammar(self) -> Grammar:
+        """What a line of one file means; a new one for each file."""
+        raise NotImplementedError
+
+    def lines(self, source: SourceText) -> Iterable[Line]:
+        """What of a text is one statement each."""
+        return plain_lines(source)
+
+    def program(self, text: str, file: str) -> LineProgram:
+        """The routines, points and data of one file."""
+        return read_lines(text, file, self.grammar(), self.name, self.lines)
+
+    def writer(self, options: WriterOptions) -> LineWriter:
+        """What writes one program."""
+        raise NotImplementedError
+
+    def comment(self, text: str) -> Iterator[str]:
+        """Lines of comment."""
+        yield f"{self.dialect.comment}{text}"
+
+    def file_name(self, program: Program) -> str:
+        """The name of a program and its file."""
+        return re.sub(r"\W+", "_", program.name, flags=re.ASCII) or "main"
+
+    def number(self, value: float) -> str:
+        """A number as the language writes it."""
+        return nine_decimals(value)
+
+    def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
+        """The numbers of a speed or zone, in the order in which a move has them; the language's
+        settings unless it says otherwise."""
+        return self.grammar().settings.numbers(kind, part, move)
+
+    def own(self, use: Use) -> Iterator[Edit]:
+        """What is put at a move that gets numbers, or words, of its own: settings unless the
+        language says otherwise."""
+        settings = self.grammar().settings
+        if isinstance(use.new, JointTarget | PoseTarget) or not any(settings):
+            raise InputError("there is no number of its own to change: write the program anew")
+        yield from settings.own(use)
+
+    # --------------------------------------------------------------------- its parts
+
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
+        """See `core.language.Reader`."""
+        return read_with({file: SourceFile(file, text)}, file, options, self._read)
+
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
+        """The same of a file, and of those beside it that belong to it."""
+        names = (lambda text: ()) if self.called is None else self.called.findall
+        files = with_called(path, options, (path.suffix.lower(),), names, self.always)
+        return read_with(files, str(path), options, self._read)
+
+    def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
+        """See `core.language.Patcher`."""
+        chosen = PatcherOptions.of(options, f"{self.name} patcher")
+        return patch_lines(program, chosen, self.numbers, self.number, self.own)
+
+    def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
+        """See `core.language.Writer`; the option is ``opaque``."""
+        name = self.file_name(program)
+        chosen = WriterOptions.of(options, f"{self.name} writer")
+        return {f"{name}{self.suffix}": self.written(program, name, chosen)}
+
+    def written(self, program: Program, name: str, options: WriterOptions) -> str:
+        """The text of a program."""
+        writer = self.writer(options)
+
+        def move(move: Move, *_: object) -> Iterable[str]:
+            check_said(move, self.dialect, self.name)
+            return writer.move(move)
+
+        def wait(wait: Wait) -> Iterable[str]:
+            return (writer.wait(wait),)
+
+        def opaque(kept: Opaque) -> Iterable[str]:
+            if options.opaque is OpaqueStyle.KEEP:
+                return (kept.text,)
+            return self.comment(kept.text)
+
+        return writer.text(name, lines_of_statements(program, wait, opaque, move))
+
+    def numbers(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
+        """The numbers of a part of a move, in the order in which a line has them.
+
+        Raises:
+            InputError: the language cannot say the move.
+        """
+        check_said(move, self.dialect, self.name)
+        if isinstance(part, JointTarget | PoseTarget):
+            return self.positions.numbers(part)
+        return self.settings_of(kind, part, move)
+
+    def _read(self, files: Files, main: str, options: ReadOptions) -> Program:
+        first, *others = (self.program(source.text, file) for file, source in files.items())
+        for other in others:
+            first = first.with_file(other)
+        return run_lines(first, self.grammar(), options)

@@ -1,0 +1,87 @@
+"""Positions as six or seven numbers of a text, and back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...dialect import Orientation
+from ...program.target import Configuration, JointTarget, PoseTarget, Target
+from ...spatial.pose import Pose
+from ...spatial.rotation import (
+    euler_zyx,
+    euler_zyz,
+    matrix_from_euler_zyx,
+    matrix_from_euler_zyz,
+    matrix_from_rotation_vector,
+    rotation_vector,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PositionForm:
+    """How a language says positions: x, y, z, and a rotation.
+
+    Args:
+        orientation: the form of the rotation.
+        last_first: whether the angle about the last axis stands first: W, P, R about x, y, z for
+            turns about z, the new y, the new x.
+        in_si: whether lengths are in m and angles in rad, not in mm and degrees.
+    """
+
+    orientation: Orientation
+    last_first: bool = False
+    in_si: bool = False
+
+    def pose(self, numbers: Sequence[float]) -> Pose:
+        """The pose of its numbers."""
+        length = 1.0 if self.in_si else 1e-3
+        x, y, z = (length * value for value in numbers[:3])
+        if self.orientation is Orientation.QUATERNION:
+            a, b, c, d = numbers[3:7]
+            return Pose((x, y, z), (a, b, c, d))
+        turns = [value if self.in_si else math.radians(value) for value in numbers[3:6]]
+        matrix = np.eye(4)
+        matrix[:3, :3] = self._matrix(turns[::-1] if self.last_first else turns)
+        matrix[:3, 3] = x, y, z
+        return Pose.from_matrix(matrix)
+
+    def _matrix(self, turns: Sequence[float]) -> np.ndarray:
+        if self.orientation is Orientation.ROTATION_VECTOR:
+            return matrix_from_rotation_vector(np.array(turns))
+        zyz = self.orientation is Orientation.EULER_ZYZ
+        return (matrix_from_euler_zyz if zyz else matrix_from_euler_zyx)(*turns)
+
+    def target(
+        self,
+        numbers: Sequence[float],
+        joints: bool,
+        configuration: Configuration | None = None,
+        name: str | None = None,
+    ) -> Target:
+        """The target of its numbers: of joint values, or of a pose."""
+        if not joints:
+            return PoseTarget(self.pose(numbers), configuration, name=name)
+        values = numbers if self.in_si else map(math.radians, numbers)
+        return JointTarget(tuple(values), name=name)
+
+    def numbers(self, value: Target | Pose) -> tuple[float, ...]:
+        """The numbers of a target or pose; see `core.spatial.rotation` for turns that have several
+        names."""
+        if isinstance(value, JointTarget):
+            return value.joints if self.in_si else tuple(map(math.degrees, value.joints))
+        pose = value.pose if isinstance(value, PoseTarget) else value
+        place = pose.position if self.in_si else tuple(1000 * v for v in pose.position)
+        if self.orientation is Orientation.QUATERNION:
+            return (*place, *pose.quaternion)
+        matrix = pose.matrix()[:3, :3]
+        if self.orientation is Orientation.ROTATION_VECTOR:
+            turns = tuple(map(float, rotation_vector(matrix)))
+        else:
+            zyz = self.orientation is Orientation.EULER_ZYZ
+            turns = (euler_zyz if zyz else euler_zyx)(matrix)
+        turns = turns[::-1] if self.last_first else turns
+        return (*place, *(turns if self.in_si else map(math.degrees, turns)))
