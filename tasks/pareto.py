@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.door import spelt
-from ..core.errors import InputError, OptionError
+from ..core.errors import OptionError
 from .changes import WaypointOptions, idle_notes, task_of
 from .files.texts import ProgramTexts
+from .motors import MotorOptions
 from .optimize import effort_of
-from .options.entries import COUNT, Extent, choice, number, value
+from .options.entries import COUNT, Extent, choice, number
 from .options.keywords import by_keywords
 from .setup import controller_of, with_setup
 
 if TYPE_CHECKING:
-    from ..core.motion.model.consumption import Consumption
     from ..core.program.program import Program
-    from ..core.robot.model import Robot
     from ..problems.improve.progress import Progress
     from .results.fronts import ProgramFront
 
@@ -26,7 +24,7 @@ SCOPES = ("waypoints", "zones", "speeds")
 
 
 @dataclass(frozen=True, kw_only=True)
-class ParetoOptions(WaypointOptions):
+class ParetoOptions(MotorOptions, WaypointOptions):
     """Which programs are looked for between time and energy."""
 
     points: int = number(8, "Durations to look at; two or more.", COUNT, Extent(2))
@@ -35,12 +33,6 @@ class ParetoOptions(WaypointOptions):
         "What may change: waypoints (with zones and speeds), zones (with speeds) or speeds. "
         "Without a cell it is speeds, with their accelerations.",
         SCOPES,
-    )
-    motors: str | Path | Consumption | None = value(
-        None,
-        "Motor figures (TOML): energy is then what the mains give, in J; otherwise it is squared "
-        "torque over time.",
-        kind=Path,
     )
     starts: int = number(
         1, "Paths to start from; with 1, the program's own alone.", COUNT, Extent(1)
@@ -71,7 +63,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
                 )
     scope = EnergyScope.SPEEDS if setup.cell is None else EnergyScope(options.change)
     wishes = task_of(program, setup, options)
-    task = EnergyTask(scope, consumption_of(options.motors, setup.robot), wishes)
+    task = EnergyTask(scope, options.consumption(setup.robot), wishes)
     texts = ProgramTexts(setup, program, own=True, anew=True, keep=True)
 
     def report(state: Progress) -> None:
@@ -95,25 +87,3 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
 
 
 pareto = by_keywords(pareto_with, ParetoOptions)
-
-
-def consumption_of(motors: str | Path | Consumption | None, robot: Robot) -> Consumption:
-    """What counts as energy: squared torque over time, or what the user's motors take.
-
-    Raises:
-        InputError: the file is unusable, or of a robot with other axes.
-    """
-    from ..core.motion.model.consumption import SQUARED_TORQUE
-    from ..core.motion.model.motors_file import load_motors
-
-    if motors is None:
-        return SQUARED_TORQUE
-    if not isinstance(motors, str | Path):
-        return motors
-    made = load_motors(Path(motors))
-    if len(made.copper) > robot.size:
-        raise InputError(
-            f"{spelt('motors')} {motors}: {robot.name} has {robot.size} axes, "
-            f"copper_w_per_nm2 has {len(made.copper)} numbers"
-        )
-    return made

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.door import given, spelt
 from ...core.errors import OptionError
-from ..changes import joint_indices, weight
-from ..options.entries import COUNT, POSITIVE, TIME, Extent, number, value
+from ..changes import joint_indices
+from ..options.entries import COUNT, Extent, number, value
 from ..options.keywords import by_keywords
 from ..options.texts import configuration
-from ..pareto import consumption_of
 from ..setup import CellOptions, Setup, setup_of
+from .objective import ObjectiveOptions
 
 if TYPE_CHECKING:
-    from ...core.motion.model.consumption import Consumption
     from ...core.program.tool import Tool
     from ...problems.free_motion.optimal_control import SearchStep, Surroundings
     from ..results.motions import FreeMotion
@@ -26,7 +24,7 @@ MOST_TRIALS = 16
 
 
 @dataclass(frozen=True, kw_only=True)
-class FreeMotionOptions(CellOptions):
+class FreeMotionOptions(ObjectiveOptions, CellOptions):
     """From where to where a robot moves, past what, and for what price."""
 
     vias: Sequence[str | Sequence[float]] = value(
@@ -42,18 +40,6 @@ class FreeMotionOptions(CellOptions):
     axes: str | Sequence[int] | None = value(
         None, "Joints that may move, such as 2,3; all if unset."
     )
-    objective: float | str = value(
-        "time",
-        "time, energy, or a weight w between 0 and 1: w · time + (1 − w) · energy.",
-        weight,
-    )
-    motors: str | Path | Consumption | None = value(
-        None,
-        "Motor figures (TOML): energy is then what the mains give, in J; otherwise it is squared "
-        "torque over time.",
-        kind=Path,
-    )
-    longest: float | None = number(None, "Seconds that the motion may take.", TIME, POSITIVE)
     intervals: int = number(
         60,
         "Pieces of time that the motion is first laid out in; more are finer, and take longer.",
@@ -99,7 +85,7 @@ def free_motion_with(
     ends = [configuration(q, spelt(name), robot) for q, name in ((start, "start"), (goal, "goal"))]
     vias = [configuration(q, spelt("vias", "--via"), robot) for q in options.vias]
     tool = _tool(setup, options.tool)
-    consumption = consumption_of(options.motors, robot)
+    consumption = options.consumption(robot)
     task = MotionTask(
         robot,
         start=ends[0],
@@ -107,9 +93,7 @@ def free_motion_with(
         joints=None if options.axes is None else joint_indices(options.axes, robot.size),
         tcp=tool.tcp,
         loads=(carried_inertia(tool) if robot.links else None,),
-        objective=MotionObjective(
-            weight(options.objective, spelt("objective")), consumption, options.longest
-        ),
+        objective=MotionObjective(options.weight, consumption, options.longest),
     )
     effort = MotionEffort(intervals=options.intervals, trials=options.trials)
 

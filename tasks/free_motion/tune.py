@@ -4,43 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.display import counted
 from ...core.door import spelt
 from ...core.errors import InputError, OptionError
-from ..changes import weight
 from ..options import texts
 from ..options.entries import POSITIVE, TIME, number, switch, value
 from ..options.keywords import by_keywords
-from ..pareto import consumption_of
 from ..setup import RobotOptions, controller_of, start_of, with_setup
+from .objective import ObjectiveOptions
 
 if TYPE_CHECKING:
     from ...core.arrays import FloatArray
-    from ...core.motion.model.consumption import Consumption
     from ...core.program.program import Program
     from ...core.robot.model import Robot
     from ..results.motions import TunedMotion
 
 
 @dataclass(frozen=True, kw_only=True)
-class TuneOptions(RobotOptions):
+class TuneOptions(ObjectiveOptions, RobotOptions):
     """What limits the motion along a path, and what counts."""
 
-    objective: float | str = value(
-        "time",
-        "time, energy, or a weight w between 0 and 1: w · time + (1 − w) · energy.",
-        weight,
-    )
-    motors: str | Path | Consumption | None = value(
-        None,
-        "Motor figures (TOML): energy is then what the mains give, in J; otherwise it is squared "
-        "torque over time.",
-        kind=Path,
-    )
-    longest: float | None = number(None, "Seconds that the motion may take.", TIME, POSITIVE)
     torques: bool = switch("Hold the torque limits of the robot's description.")
     jerk: str | Sequence[float] | None = value(
         None,
@@ -81,8 +66,8 @@ def tune_with(program: Program, options: TuneOptions) -> TunedMotion:
     timing = controller.stamp(program, controller.plan(program, start_of(program)))
     options.say("finding the best speeds")
     objective = TuningObjective(
-        weight(options.objective, spelt("objective")),
-        consumption_of(options.motors, setup.robot),
+        options.weight,
+        options.consumption(setup.robot),
         options.longest,
     )
     drives = drives_of(setup.robot) if options.torques else ()
