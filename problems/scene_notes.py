@@ -15,9 +15,10 @@ def scene_notes(scenes: SceneOf, program: Program) -> tuple[Note, ...]:
         scenes: the cell with each tool.
         program: whose tools count.
     """
-    tools = dict.fromkeys(move.tool for move in program.moves)
-    around = [obstacle.name for tool in tools for obstacle in scenes(tool).cell.obstacles]
-    notes = [note for tool in tools for note in scenes(tool).notes]
+    first = {move.tool: index for index, move in reversed(list(enumerate(program.moves)))}
+    looked = [scenes(tool, index) for tool, index in sorted(first.items(), key=lambda one: one[1])]
+    around = [obstacle.name for scene in looked for obstacle in scene.cell.obstacles]
+    notes = [note for scene in looked for note in scene.notes]
     if FLOOR in around:
         notes.append(
             Note(

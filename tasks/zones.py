@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from .changes import ChangeOptions, at_speeds, delivered, freed_stops, kept_moves, rounding_of
@@ -11,6 +11,7 @@ from .files.texts import ProgramTexts
 from .options.entries import switch, value
 from .options.idle import ALL, idle_kept
 from .options.keywords import by_keywords
+from .results.cell_course import CellCourse
 from .setup import CellOptions, controller_of, start_of, with_setup
 
 if TYPE_CHECKING:
@@ -66,8 +67,9 @@ def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) 
 
     program, setup = with_setup(program, options)
     cell = setup.surroundings(program, no_floor=options.no_floor)
+    course = CellCourse.of(program, setup)
     moves, speeds = kept_moves(program, options.keep)
-    kept = sorted({*moves, *at_speeds(program, speeds)})
+    kept = sorted({*moves, *at_speeds(program, speeds), *course.handled})
     wanted = ZoneTask(
         clearance=options.clearance,
         freed=freed_stops(program, options.free, kept),
@@ -77,10 +79,21 @@ def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) 
         rounding=rounding_of(setup.vendor, options.predefined),
         start=start_of(program),
         beside=beside,
+        handling=course.handling,
     )
     texts = ProgramTexts(setup, program, own=options.own)
     controller = controller_of(program, setup)
-    made = maximize_zones(controller, program, cell, wanted, texts.read_back, options.say)
+
+    def read_back(changed: Program) -> Program:
+        return course.loaded(texts.read_back(course.unloaded(changed)))
+
+    found = maximize_zones(controller, course.program, cell, wanted, read_back, options.say)
+    made = replace(
+        found,
+        original=program,
+        program=course.unloaded(found.program) if found.changed else program,
+        notes=(*course.notes, *found.notes),
+    )
     able = {i for i, move in enumerate(program.moves) if not isinstance(move.zone, Fine)}
     able |= set(freed_stops(program, options.free, ())) if ALL in options.free else set()
     return delivered(made, texts, setup, idle_kept(program, options.keep, able, path=False))

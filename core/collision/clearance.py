@@ -22,11 +22,9 @@ from ..handling.handling import Handling
 from ..motion.path.path import Path
 from ..program.program import Program
 from ..program.tool import Tool
-from .scene.bodies import BodyKind
+from .scene.handled_pairs import touching
 from .scene.scene import TOUCH, CollisionScene
 
-RESTING = 2e-3
-"""m by which a part may be off, or in, what it rests on where it is taken or released."""
 STEP = 0.01
 """rad (or m of a linear axis) from one configuration that is looked at to the next, about."""
 _BETWEEN = 16
@@ -139,7 +137,7 @@ class ClearanceMeter:
                 continue
             own = _own_pairs(scene)
             told: list[Approach | None] = []
-            left_out = self._resting(scene, first + move, rows)
+            left_out = self._left_out(scene, first + move, rows)
             for side, chosen in enumerate((~own & ~left_out, own)):
                 pairs = np.flatnonzero(chosen)
                 near = max(limits[side], min(self._cell.clearance, within))
@@ -167,7 +165,7 @@ class ClearanceMeter:
             if scene is None:
                 continue
             rows = np.flatnonzero(owners == move)
-            looked = ~_own_pairs(scene) & ~self._resting(scene, move, q[rows])
+            looked = ~_own_pairs(scene) & ~self._left_out(scene, move, q[rows])
             pairs = np.flatnonzero(looked)
             for row in rows.tolist():
                 met = scene.nearest(q[row : row + 1], pairs, within)
@@ -194,33 +192,10 @@ class ClearanceMeter:
                 distance, _, pair = closer
         return distance, scene.pair_names(pair)
 
-    def _resting(self, scene: CollisionScene, move: int, q: FloatArray) -> NDArray[np.bool_]:
-        """Which pairs of a scene may touch on a move, (P,): what is taken there or released.
-
-        That is the tool and a part that it takes at the move's end or has released at its
-        beginning, and a part that is carried with what it rests on there, as long as it does not
-        go deeper into it.
-        """
-        left_out = np.zeros(len(scene.pairs), dtype=np.bool_)
+    def _left_out(self, scene: CollisionScene, move: int, q: FloatArray) -> NDArray[np.bool_]:
         if self._handling is None:
-            return left_out
-        before, behind = self._handling.before[move], self._handling.behind[move]
-        if not before | behind:
-            return left_out
-        resting: list[tuple[int, int]] = []
-        things = [body.thing in before | behind for body in scene.bodies]
-        for row in np.flatnonzero(np.array(things)[scene.pairs].any(axis=1)).tolist():
-            first, second = (scene.bodies[k] for k in scene.pairs[row])
-            if first.kind is BodyKind.TOOL and second.kind is BodyKind.PART:
-                left_out[row] = first.own
-            elif first.own != second.own:
-                thing = next((b.thing for b in (first, second) if b.kind is BodyKind.HELD), "")
-                resting += [(0, row)] if thing in before else []
-                resting += [(len(q) - 1, row)] if thing in behind else []
-        for row in _at_rest(scene, q, resting):
-            deepest = scene.nearest(q, np.array([row]), 0.0)
-            left_out[row] = deepest is None or deepest[0] >= -RESTING
-        return left_out
+            return np.zeros(len(scene.pairs), dtype=np.bool_)
+        return touching(scene, self._handling, move, q)
 
     def _scene(self, move: int) -> CollisionScene | None:
         """The scene of a move; None where shapes are not known, which is noted once."""
@@ -280,12 +255,3 @@ def _own_pairs(scene: CollisionScene) -> NDArray[np.bool_]:
     """Which pairs are of the arm and what it carries alone, (P,)."""
     own = np.array([body.own for body in scene.bodies])
     return np.asarray(own[scene.pairs].all(axis=1))
-
-
-def _at_rest(scene: CollisionScene, q: FloatArray, asked: list[tuple[int, int]]) -> list[int]:
-    """Rows of pairs that all but touch at one of the samples (K,) that each is asked at."""
-    if not asked:
-        return []
-    samples, rows = np.array(sorted(asked)).T
-    distance, _ = scene.chosen_distances(q, (samples, rows), RESTING)
-    return sorted(set(rows[distance < RESTING].tolist()))

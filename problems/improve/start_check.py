@@ -38,7 +38,7 @@ def check_start(
     if overlap is not None:
         if FLOOR in overlap.names:
             raise _error(run, overlap.move, f"the program goes {overlap.below()}; {lifted()}")
-        cell = scenes(run.program.moves[overlap.move].tool).cell
+        cell = scenes(run.program.moves[overlap.move].tool, overlap.move).cell
         hints = "".join(f"; {doubt}" for doubt in cell.doubtful_units())
         raise _error(run, overlap.move, f"the program collides as it is: {overlap}{hints}")
     least = certify(controller, run, scenes, 0.0, residual, resolution=_TOLD)
@@ -89,7 +89,7 @@ def _first_overlap(run: Run, scenes: SceneOf) -> _Overlap | None:
     """The deepest overlap of the first move that has one, by the samples of the motion."""
     motion = run.trajectory
     for move in dict.fromkeys(map(int, motion.move)):
-        scene = scenes(run.program.moves[move].tool)
+        scene = scenes(run.program.moves[move].tool, move)
         rows = np.flatnonzero(motion.move == move)
         deepest: _Overlap | None = None
         for first in range(0, len(rows), _CHUNK):

@@ -10,6 +10,7 @@ import flyby
 from flyby.core.errors import InputError
 from flyby.core.lint.check import CLEARANCE, COLLISION, NEAREST, PART
 from flyby.core.lint.finding import Finding
+from flyby.core.program.zone import Fine
 
 ROOT = Path(__file__).parents[2]
 PICK = ROOT / "examples" / "pick.script"
@@ -106,7 +107,26 @@ def test_a_program_without_a_cell_has_no_clearance() -> None:
     assert run.clearances == ()
 
 
-@pytest.mark.parametrize("task", ["zones", "optimize"])
-def test_proofs_refuse_cells_with_parts(cell, task: str) -> None:
-    with pytest.raises(InputError, match="parts that are picked and placed"):
-        getattr(flyby, task)(flyby.read(PICK, cell=cell()))
+def test_what_moves_points_refuses_cells_with_parts(cell) -> None:
+    with pytest.raises(InputError, match=r"parts that are picked and placed.*zones"):
+        flyby.optimize(flyby.read(PICK, cell=cell()))
+
+
+def test_zones_grow_as_far_as_what_is_carried_lets_them(cell) -> None:
+    """The bottle would meet a low post in a larger zone behind the tray, the bare gripper not."""
+    post = '[[obstacle]]\nname = "post"\nbox_mm = [30, 30, 40]\n'
+    post += "pose = { xyz_mm = [-450, -185, 185] }\n"
+    zones = []
+    for change in ((), (('attach = "set', 'attach = "never" # "set'),)):
+        path = cell(*change)
+        path.write_text(path.read_text("utf-8") + post, "utf-8")
+        made = flyby.zones(flyby.read(PICK, cell=path), free=["all"])
+        assert made.proven and made.after.time < made.before.time
+        assert made.certificate is not None
+        assert ("what takes it" in made.certificate.message) is not bool(change)
+        moves = made.program.moves
+        assert all(move.load is None for move in moves)
+        # Where bottles are taken and let go it stops, whatever is free.
+        assert change or [isinstance(moves[k].zone, Fine) for k in (2, 5, 8, 11)] == [True] * 4
+        zones.append(moves[3].zone.tcp)
+    assert zones[0] < 0.6 * zones[1]

@@ -6,7 +6,9 @@ See docs/reference/certificate.md for what is proven and how.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -17,26 +19,44 @@ from ...motion.emulator.run import Run
 from ...motion.path.tcp_walk import JOINED
 from ...program.tool import Tool
 from ..deviation.bounds import Deviation, parts_of
-from ..scene.scene import CollisionScene
+from ..scene.scene import CollisionScene, TouchingPairs
 from .enclosure import Enclosure, Span
 from .findings import Budget, FailureCause, UnprovenStretch
 from .subdivision import Prover
 from .verdict import CONTACT, MM, Certificate, Met, VerdictReader, nearest_of
 
-SceneOf = Callable[[Tool], CollisionScene]
-"""The scene with a tool mounted."""
-
 TOLERANCE = 1e-5
 """m by which what is proven may stay below the clearance asked for."""
 BUDGET = 2_000_000
 _FINEST = 4e-6
+_SLACK = (1e-3, 4e-3, 0.016)
+"""m beyond what is proven, from which pairs that touched count as apart; the first that does."""
+Finding = tuple[CollisionScene, UnprovenStretch]
+"""What is not proven, and of which bodies."""
+
+
+class SceneOf(Protocol):
+    """The scenes of a program's moves."""
+
+    def __call__(self, tool: Tool, move: int = 0, /) -> CollisionScene:
+        """The scene with a tool mounted.
+
+        Args:
+            tool: of the move.
+            move: its index in the program, which tells where parts are.
+        """
+        ...
 
 
 def scenes_of(cell: Cell) -> SceneOf:
-    """The scenes of a cell, made when a tool is first asked for."""
+    """The scenes of a cell without parts, made when a tool is first asked for.
+
+    Raises:
+        InputError: of a scene that cannot be made, when it is asked for.
+    """
     known: dict[Tool, CollisionScene] = {}
 
-    def scene(tool: Tool) -> CollisionScene:
+    def scene(tool: Tool, move: int = 0, /) -> CollisionScene:
         if tool not in known:
             known[tool] = CollisionScene(cell, tool)
         return known[tool]
@@ -59,7 +79,7 @@ def certify(
     Args:
         controller: that drove it.
         run: path and timing.
-        scenes: the scene of each move's tool; see `scenes_of`.
+        scenes: the scene of each move; see `scenes_of` and `handled_scenes`.
         clearance: m, wanted between all pairs that the scenes look at; what is proven may stay
             `TOLERANCE` below.
         residual: m by which a moving body may be elsewhere than the emulated motion says.
@@ -101,27 +121,18 @@ def certify_stretch(
     for first, last in spans:
         if not first <= last:
             raise InputError(f"a stretch runs from a first to a last σ, not from {first} to {last}")
-    enclosure = Enclosure.of(run.path)
-    left = Budget(budget)
-    deviation_of_run, reader = Deviation.of(controller, run), VerdictReader(run)
+    enclosure, deviation = Enclosure.of(run.path), Deviation.of(controller, run)
+    proof = _Proof(run, scenes, residual, spans, enclosure, deviation, Budget(budget))
+    reader, left = VerdictReader(run), proof.left
     wanted = max(clearance - TOLERANCE, CONTACT)
     torn = _first_tear(run, spans)
     if torn is not None:
-        segment = int(run.path.pieces.segment[torn.piece])
-        scene = scenes(run.program.moves[run.path.route.moves[segment]].tool)
+        move = run.path.route.moves[int(run.path.pieces.segment[torn.piece])]
+        scene = scenes(run.program.moves[move].tool, move)
         return reader.refused(scene, torn, None, wanted, left.used)
     met: list[Met] = []
-    findings: list[tuple[CollisionScene, UnprovenStretch]] = []
-    for part in parts_of(run.path):
-        owned = _owners(run, scenes, spans, part)
-        if not owned:
-            continue
-        intervals = run.path.pieces.first_interval[list(part)]
-        provers = [
-            (Prover(enclosure, scene, deviations, residual, left), pieces)
-            for deviations in deviation_of_run.over(int(intervals[0]), int(intervals[1]))
-            for scene, pieces in owned
-        ]
+    findings: list[Finding] = []
+    for provers in proof.provers():
         for prover, pieces in provers:
             finding = prover.prove(spans, pieces, wanted)
             if finding is not None:
@@ -132,10 +143,12 @@ def certify_stretch(
         met += [Met(prover.scene, prover.nearest, prover.proven) for prover, _ in provers]
         if any(finding.cause is FailureCause.NEAR for _, finding in findings):
             break
+    if not findings:
+        findings = proof.of_left_out(wanted)
     if findings:
         scene, finding = min(findings, key=lambda found: _rank(found[1]))
         return reader.refused(scene, finding, nearest_of(met), wanted, left.used)
-    return reader.proven(met, resolution or 0.0, left.used)
+    return reader.proven(met, resolution or 0.0, left.used, wanted)
 
 
 def _check(clearance: float, residual: float, resolution: float | None) -> None:
@@ -148,24 +161,97 @@ def _check(clearance: float, residual: float, resolution: float | None) -> None:
         )
 
 
-def _owners(
-    run: Run, scenes: SceneOf, spans: Sequence[Span], part: tuple[int, int]
-) -> list[tuple[CollisionScene, list[int]]]:
-    """The scenes in the order of their first use, and the pieces of a part of the path in each.
+@dataclass(frozen=True)
+class _Proof:
+    """What the provers of one certificate share.
 
-    Only pieces that the spans touch.
+    Args:
+        run, scenes, residual: see `certify`.
+        spans: of the path.
+        enclosure, deviation: of the path, and of the run from it.
+        left: what may still be measured.
     """
-    path = run.path
-    edge = path.pieces.edge
-    touched = np.zeros(len(edge) - 1, dtype=np.bool_)
-    for first, last in spans:
-        touched |= (edge[1:] >= first) & (edge[:-1] <= last)
-    owned: dict[int, tuple[CollisionScene, list[int]]] = {}
-    for piece in part[0] + np.flatnonzero(touched[slice(*part)]):
-        move = run.program.moves[path.route.moves[int(path.pieces.segment[piece])]]
-        scene = scenes(move.tool)
-        owned.setdefault(id(scene), (scene, []))[1].append(int(piece))
-    return list(owned.values())
+
+    run: Run
+    scenes: SceneOf
+    residual: float
+    spans: Sequence[Span]
+    enclosure: Enclosure
+    deviation: Deviation
+    left: Budget
+
+    def provers(self) -> Iterator[list[tuple[Prover, list[int]]]]:
+        """Those of one part of the path after the other, with their pieces."""
+        for part in parts_of(self.run.path):
+            if owned := self._owners(part):
+                yield self._of_part(part, owned)
+
+    def of_left_out(self, wanted: float) -> list[Finding]:
+        """What is wrong with pairs that touch at an end of a move, from where they are apart.
+
+        Args:
+            wanted: m that they have to keep from there on.
+        """
+        found: list[Finding] = []
+        for slack in _SLACK:
+            if not (found := list(self._of_left_out(wanted, slack))):
+                break
+        return found
+
+    def _of_left_out(self, wanted: float, slack: float) -> Iterator[Finding]:
+        for part in parts_of(self.run.path):
+            for scene, pieces in self._owners(part):
+                if (touching := scene.left_out) is None:
+                    continue
+                apart = self._apart(touching, pieces[0], wanted + self.residual + slack)
+                for prover, _ in self._of_part(part, [(touching.scene, pieces)]) if apart else ():
+                    finding = prover.prove(apart, pieces, wanted)
+                    if finding is not None:
+                        yield prover.scene, finding
+
+    def _apart(self, touching: TouchingPairs, piece: int, limit: float) -> list[Span]:
+        """The spans on the move that a piece belongs to, less its ends: where bodies touch, until
+        all of them are apart by ``limit`` m for the first time."""
+        path = self.run.path
+        segment = path.pieces.segment
+        rows = np.flatnonzero(segment[path.pieces.sample_pieces] == segment[piece])
+        free = np.flatnonzero(touching.scene.clearance(path.q[rows], limit) >= limit)
+        if not free.size:
+            return []
+        begin = float(path.sigma[rows[free[0] if touching.before else 0]])
+        end = float(path.sigma[rows[free[-1] if touching.behind else -1]])
+        return [
+            (max(first, begin), min(last, end))
+            for first, last in self.spans
+            if first < end and last > begin
+        ]
+
+    def _of_part(
+        self, part: tuple[int, int], owned: Sequence[tuple[CollisionScene, list[int]]]
+    ) -> list[tuple[Prover, list[int]]]:
+        first, last = self.run.path.pieces.first_interval[list(part)]
+        return [
+            (Prover(self.enclosure, scene, deviations, self.residual, self.left), pieces)
+            for deviations in self.deviation.over(int(first), int(last))
+            for scene, pieces in owned
+        ]
+
+    def _owners(self, part: tuple[int, int]) -> list[tuple[CollisionScene, list[int]]]:
+        """The scenes in the order of their first use, and the pieces of a part of the path in each.
+
+        Only pieces that the spans touch.
+        """
+        path, moves = self.run.path, self.run.program.moves
+        edge = path.pieces.edge
+        touched = np.zeros(len(edge) - 1, dtype=np.bool_)
+        for first, last in self.spans:
+            touched |= (edge[1:] >= first) & (edge[:-1] <= last)
+        owned: dict[int, tuple[CollisionScene, list[int]]] = {}
+        for piece in part[0] + np.flatnonzero(touched[slice(*part)]):
+            move = path.route.moves[int(path.pieces.segment[piece])]
+            scene = self.scenes(moves[move].tool, move)
+            owned.setdefault(id(scene), (scene, []))[1].append(int(piece))
+        return list(owned.values())
 
 
 def _first_tear(run: Run, spans: Sequence[Span]) -> UnprovenStretch | None:

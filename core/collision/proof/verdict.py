@@ -123,13 +123,20 @@ class VerdictReader:
             measured,
         )
 
-    def proven(self, known: Sequence[Met], resolution: float, measured: int) -> Certificate:
-        """The certificate of a proof to within ``resolution`` m."""
+    def proven(
+        self, known: Sequence[Met], resolution: float, measured: int, wanted: float
+    ) -> Certificate:
+        """The certificate of a proof to within ``resolution`` m, of ``wanted`` m at least."""
         clearance = min((part.proven for part in known), default=math.inf)
         if clearance == math.inf:
             message = "nothing is near that it could touch"
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)
         message = in_words(clearance) + _rests_on(known[0].scene.robot)
+        if any(part.scene.left_out is not None for part in known):
+            message += (
+                "; a part, and what takes it or what it rests on, keep "
+                f"{_shown(wanted)} from where they are apart"
+            )
         nearest = nearest_of(known)
         if nearest is None or nearest.nearest.kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.

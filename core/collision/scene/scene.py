@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from copy import copy
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,6 +42,19 @@ CHUNK = 256
 """Configurations worked on at once."""
 
 
+class TouchingPairs(NamedTuple):
+    """Pairs of bodies that touch at an end of a move.
+
+    Args:
+        scene: of these pairs alone.
+        before, behind: whether they may touch where the move begins, and where it ends.
+    """
+
+    scene: CollisionScene
+    before: bool
+    behind: bool
+
+
 class CollisionScene:
     """A cell with one tool mounted; it never changes.
 
@@ -55,6 +69,8 @@ class CollisionScene:
         exclusions: the pairs that are not, with reasons.
         frames: the frames that the bodies ride on.
         notes: what a user should know of shapes and pairs.
+        left_out: the pairs that are not looked at here, as they touch at an end of the move; None
+            for none.
 
     Raises:
         InputError: the robot has no shapes, the cell does not know the tool, a mesh cannot be
@@ -91,6 +107,7 @@ class CollisionScene:
             *notes,
             *robot_notes(cell.robot),
         )
+        self.left_out: TouchingPairs | None = None
         self._set_pairs(parts or ())
 
     def rearranged(self, parts: Arrangement) -> CollisionScene:
@@ -104,6 +121,27 @@ class CollisionScene:
         other._recent = RecentDistances()
         other._set_bodies(parts)
         other._set_pairs(parts)
+        return other
+
+    def leaving_out(
+        self, pairs: NDArray[np.bool_], *, before: bool, behind: bool
+    ) -> CollisionScene:
+        """The same scene without some of its pairs, which are in ``left_out`` of what is made.
+
+        Args:
+            pairs: (P,), of `pairs`.
+            before, behind: whether they may touch where the move begins, and where it ends.
+        """
+        other = self._of_pairs(~pairs)
+        if pairs.any():
+            other.left_out = TouchingPairs(self._of_pairs(pairs), before, behind)
+        return other
+
+    def _of_pairs(self, which: NDArray[np.bool_]) -> CollisionScene:
+        other = copy(self)
+        other._recent = RecentDistances()
+        other.pairs = self.pairs[which]
+        other._pairs = [(int(a), int(b)) for a, b in other.pairs]
         return other
 
     def _set_bodies(self, parts: Arrangement) -> None:

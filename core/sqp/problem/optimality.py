@@ -80,7 +80,9 @@ def residuals(
         factors: of the objective and of the rows (m,): scaled over unscaled.
     """
     return OptimalityResiduals(
-        *_measured(x, c, g, J.pattern.starts, J.pattern.rows, J.data, multipliers, *factors, *bounds)
+        *_measured(
+            x, c, g, J.pattern.starts, J.pattern.rows, J.data, multipliers, *factors, *bounds
+        )
     )
 
 

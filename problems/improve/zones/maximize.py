@@ -14,6 +14,7 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.cell.cell import Cell
+from ....core.collision.handled_scenes import handled_scenes
 from ....core.collision.proof.certificate import SceneOf, scenes_of
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError, MotionError, Note
@@ -99,6 +100,9 @@ class _Maximization:
         self._tell = tell
         self._wanted = cell.clearance if options.clearance is None else options.clearance
         self._scenes: SceneOf = scenes_of(cell)
+        if options.handling is not None:
+            path = controller.plan(program, options.start)
+            self._scenes = handled_scenes(cell, options.handling, path)
         self._feasibility = ProgramFeasibility(
             controller,
             self._scenes,
@@ -189,10 +193,15 @@ class _Maximization:
 
     def _looks(self, points: Points, deviations: FloatArray) -> list[Clearing]:
         """What each segment is looked at by."""
-        tools = (self._program.moves[index].tool for index in points.route.moves)
+        moves = self._program.moves
         return [
-            Clearing(self._scenes(tool), self._wanted, deviation, self._options.residual)
-            for tool, deviation in zip(tools, deviations, strict=True)
+            Clearing(
+                self._scenes(moves[index].tool, index),
+                self._wanted,
+                deviation,
+                self._options.residual,
+            )
+            for index, deviation in zip(points.route.moves, deviations, strict=True)
         ]
 
 

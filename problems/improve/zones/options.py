@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from ....core.errors import InputError
+from ....core.handling.handling import Handling
 from ....core.program.target import JointTarget
 from ....core.program.zone import Radius, VendorZone
 from ..rounding import Rounding
@@ -33,6 +34,7 @@ class ZoneTask:
         tolerance: share of the first failing size by which a zone may stay below it.
         start: where the robot stands; None for the program's own start.
         beside: what other robots say of a program; None where there are none.
+        handling: of the cell's parts, at targets that stay; None for a cell without.
 
     Raises:
         InputError: a number is out of range.
@@ -48,6 +50,7 @@ class ZoneTask:
     tolerance: float = TOLERANCE
     start: JointTarget | None = None
     beside: Beside | None = None
+    handling: Handling | None = None
 
     def __post_init__(self) -> None:
         for name in ("clearance", "residual"):

@@ -1,0 +1,129 @@
+"""Certificates of programs that take parts and put them down."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flyby.core.cell.cell import Cell, Obstacle
+from flyby.core.cell.geometry import Geometry
+from flyby.core.cell.workpiece import Workpiece
+from flyby.core.collision.clearance import ClearanceMeter, nearest_of
+from flyby.core.collision.handled_scenes import handled_scenes
+from flyby.core.collision.proof.certificate import certify
+from flyby.core.collision.proof.verdict import Certificate, Verdict
+from flyby.core.handling.handling import handling_of
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.move import MoveC, MoveL, Opaque
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import PoseTarget
+from flyby.core.program.tool import Tool
+from flyby.core.program.zone import FINE, Radius
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.robot.shape import Box, Cylinder
+from flyby.core.spatial.pose import Pose
+
+UR = find_robot("ur/ur10e")
+CONTROLLER = Controller(find_vendor("ur"), UR)
+GRIP = Tool("grip", Pose((0.0, 0.0, 0.1)))
+ON, OFF = Opaque("on", True), Opaque("off", True)
+FLOOR = Obstacle("floor", Geometry(Box((0.6, 1.0, 0.1)), Pose((0.7, 0.0, -0.05))))
+WALL = Obstacle("wall", Geometry(Box((0.1, 0.02, 0.2)), Pose((0.6, 0.0, 0.1))))
+SLOW = Speed(tcp=0.5)
+
+
+def place(x: float, y: float, z: float) -> PoseTarget:
+    return PoseTarget(Pose((x, y, z), (0.0, 1.0, 0.0, 0.0)))
+
+
+def to(x: float, y: float, z: float, zone=FINE) -> MoveL:
+    return MoveL(place(x, y, z), SLOW, zone, tool=GRIP)
+
+
+def crate(**more) -> Workpiece:
+    """10 cm high, on the floor, its top at 0.1 m."""
+    return Workpiece(
+        "crate", Geometry(Box((0.1, 0.1, 0.1)), Pose((0.6, 0.2, 0.05))), ("on",), ("off",), **more
+    )
+
+
+CRATES = (crate(),)
+
+
+def cell_with(*around: Obstacle, parts=CRATES) -> Cell:
+    grip = Geometry(Cylinder(0.03, 0.09), Pose((0.0, 0.0, 0.045)))
+    return Cell(
+        UR,
+        "ur",
+        tools={"grip": GRIP},
+        tool_geometries={"grip": grip},
+        obstacles=around,
+        parts=parts,
+    )
+
+
+def trip(put: float = 0.1, lift: float = 0.3, zone=FINE, end: float = -0.2) -> Program:
+    return Program(
+        (
+            to(0.6, 0.2, lift),
+            to(0.6, 0.2, 0.1),
+            ON,
+            to(0.6, 0.2, lift, zone),
+            to(0.6, end, lift, zone),
+            to(0.6, end, put),
+            OFF,
+            to(0.6, end, lift),
+        )
+    )
+
+
+def proof(program: Program, cell: Cell, clearance: float = 0.0, **more) -> Certificate:
+    handling, run = handling_of(program, cell), CONTROLLER.run(program)
+    scenes = handled_scenes(cell, handling, run.path)
+    return certify(CONTROLLER, run, scenes, clearance, **more)
+
+
+@settings(max_examples=8, deadline=None)
+@given(lift=st.floats(0.25, 0.45), end=st.floats(-0.3, -0.15), radius=st.floats(0.0, 0.04))
+def test_nothing_is_proven_that_samples_contradict(lift, end, radius) -> None:
+    program, cell = trip(lift=lift, zone=Radius(radius), end=end), cell_with(FLOOR, WALL)
+    run = CONTROLLER.run(program)
+    met = nearest_of(ClearanceMeter(cell, program, handling_of(program, cell)).over(run.path, 0))
+    sampled = min(side.distance for side in met if side is not None)
+    made = proof(program, cell, resolution=1e-5)
+    if sampled > 0.0:
+        assert made.proven
+        # Where what touched comes apart it is near again, which samples count and a proof does not.
+        assert made.clearance <= sampled + 1e-6
+    else:
+        assert made.verdict is Verdict.VIOLATED
+
+
+def test_what_is_put_down_too_deep_is_in_the_floor() -> None:
+    assert proof(trip(), cell_with(FLOOR)).proven
+    made = proof(trip(put=0.08), cell_with(FLOOR))
+    assert made.verdict is Verdict.VIOLATED and set(made.pair or ()) == {"crate", "floor"}
+    assert made.move == 4
+
+
+def test_what_touched_keeps_clear_from_where_it_is_apart() -> None:
+    """Lifted on an arc that ends a little above the floor: the crate is near to it again there."""
+    arc = MoveC(place(0.6, -0.2, 0.101), SLOW, FINE, tool=GRIP, via=place(0.6, 0.0, 0.25))
+    program = Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, arc))
+    touched = proof(program, cell_with(FLOOR))
+    assert touched.proven and "from where they are apart" in touched.message
+    near = proof(program, cell_with(FLOOR), 0.005)
+    assert near.verdict is Verdict.VIOLATED
+    assert set(near.pair or ()) == {"crate", "floor"} and near.move == 2
+    assert near.distance is not None and 0.0 < near.distance < 0.005
+
+
+def test_a_carried_part_takes_clearance_that_the_bare_tool_has() -> None:
+    bare = proof(trip(lift=0.29), cell_with(FLOOR, WALL, parts=()))
+    laden = proof(trip(lift=0.32), cell_with(FLOOR, WALL), resolution=1e-5)
+    assert bare.proven and laden.proven
+    assert laden.clearance == pytest.approx(0.02, abs=1e-3)
+    assert set(laden.pair or ()) == {"crate", "wall"}
+    assert proof(trip(lift=0.29), cell_with(FLOOR, WALL)).verdict is Verdict.VIOLATED
