@@ -132,9 +132,19 @@ class LineLanguage:
         chosen = WriterOptions.of(options, f"{self.name} writer")
         return {f"{name}{self.suffix}": self.written(program, name, chosen)}
 
-    def written(self, program: Program, name: str, options: WriterOptions) -> str:
-        """The text of a program."""
-        writer = self.writer(options)
+    def written(
+        self,
+        program: Program,
+        name: str,
+        options: WriterOptions,
+        writer: LineWriter | None = None,
+    ) -> str:
+        """The text of a program.
+
+        Args:
+            writer: that writes it; None for the language's own.
+        """
+        writer = writer or self.writer(options)
 
         def move(move: Move, *_: object) -> Iterable[str]:
             check_said(move, self.dialect, self.name)

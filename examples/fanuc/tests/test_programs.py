@@ -174,7 +174,7 @@ def test_what_an_offset_makes_is_no_number_of_the_text() -> None:
     [
         ("L P[1] 100mm/sec FINE VOFFSET,VR[1]", r"job\.ls:5:6: .*the option 'VOFFSET.*not known"),
         ("L P[7] 100mm/sec FINE", r"unknown point 'P\[7\]'"),
-        ("L P[1] 100 FINE", "a motion is a position, a speed"),
+        ("L P[1] 100 FINE", "this form of a motion is not known"),
         ("JMP LBL[3]", "there is no label 3"),
         ("CALL WELD", r"unknown routine 'WELD'.*skip"),
         ("ENDFOR", "no block is open here"),

@@ -8,6 +8,7 @@ from flyby.core.errors import InputError
 from flyby.core.language import Sources
 from flyby.core.recording import Recording, listed, routine
 from flyby.core.robot.model import Robot
+from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.write.options import OpaqueStyle, WriterOptions
 
 from .writer import HEAD, TAIL, Writer, program_name
@@ -16,6 +17,7 @@ STEP = 0.008
 """s between positions that the controller computes."""
 USUAL_PERIOD = 3 * STEP
 """s. A KAREL program writes a line to a stick in less."""
+_SETTLE = "  WAIT .5(sec)"
 _RUN = 100
 """The register that says which run is logged."""
 _KAREL = """\
@@ -53,7 +55,7 @@ END flyby_log
 """
 
 
-def record(recording: Recording, robot: Robot, period: float) -> Sources:
+def record(recording: Recording, robot: Robot, period: float, language: LineLanguage) -> Sources:
     """The programs of the runs, one that calls them if there are several, and the logger.
 
     Raises:
@@ -63,7 +65,7 @@ def record(recording: Recording, robot: Robot, period: float) -> Sources:
     log = logger(recording, robot, period)
     name = program_name(recording.name)
     if recording.alone:
-        return {f"{name}.ls": _logged(recording, 0, name), "flyby_log.kl": log}
+        return {f"{name}.ls": _logged(recording, 0, name, language), "flyby_log.kl": log}
     names = [program_name(routine(k)) for k, _ in enumerate(recording.runs, 1)]
     called = []
     for number, run in enumerate(names, 1):
@@ -71,18 +73,16 @@ def record(recording: Recording, robot: Robot, period: float) -> Sources:
         called.append(f"  CALL {run}")
     numbered = "".join(f"{k:>4}:{line} ;\n" for k, line in enumerate(called, 1))
     made = {f"{name}.ls": f"{HEAD.format(name=name)}{numbered}/POS\n{TAIL}"}
-    made |= {f"{run}.ls": _logged(recording, k, run) for k, run in enumerate(names)}
+    made |= {f"{run}.ls": _logged(recording, k, run, language) for k, run in enumerate(names)}
     return {**made, "flyby_log.kl": log}
 
 
-def _logged(recording: Recording, index: int, name: str) -> str:
+def _logged(recording: Recording, index: int, name: str, language: LineLanguage) -> str:
     which = () if recording.alone else (f"  R[{_RUN}]={index + 1}",)
-    writer = Writer(
-        WriterOptions(OpaqueStyle.COMMENT),
-        (*which, "  RUN FLYBY_LOG", "  WAIT .5(sec)"),
-        ("  WAIT .5(sec)", "  FLG[1]=OFF"),
-    )
-    return writer.text(recording.runs[index].program, name)
+    before, after = (*which, "  RUN FLYBY_LOG", _SETTLE), (_SETTLE, "  FLG[1]=OFF")
+    quiet = WriterOptions(OpaqueStyle.COMMENT)
+    writer = Writer(quiet, before, after)
+    return language.written(recording.runs[index].program, name, quiet, writer)
 
 
 def steps(recording: Recording) -> list[str]:

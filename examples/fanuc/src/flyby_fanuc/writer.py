@@ -8,21 +8,19 @@ from dataclasses import dataclass, field
 
 from flyby.core.errors import InputError
 from flyby.core.program.event import Event, EventAnchor
-from flyby.core.program.move import Move, MoveC, MoveJ, Opaque, Wait
-from flyby.core.program.program import Program
+from flyby.core.program.move import Move, MoveC, MoveJ, Wait
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget, Target
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import VendorZone, Zone
+from flyby.core.source.lines.amounts import stated
 from flyby.core.source.write.numbering import Numbering
 from flyby.core.source.write.options import OpaqueStyle, WriterOptions
-from flyby.core.source.write.refusals import check_said
-from flyby.core.source.write.statements import lines_of_statements
 from flyby.core.spatial.pose import Pose
 
 from .configuration import FanucConfiguration
 from .dialect import CR, TP
-from .moves import UNITS, numbers_of
+from .moves import JOINT, LINE, XYZ
 
 HEAD = """\
 /PROG  {name}
@@ -54,13 +52,15 @@ def amount(value: float) -> str:
     return f"{round(value, 9):.9f}".rstrip("0").rstrip(".")
 
 
+def pace_of(move: Move, speed: Speed) -> tuple[str, float] | None:
+    """Unit and number of a speed; None for ``max_speed``."""
+    return stated(speed, JOINT if isinstance(move, MoveJ) else LINE)
+
+
 def speed_text(move: Move, speed: Speed) -> str:
     """``500mm/sec``, ``50%``, ``2sec``."""
-    for unit in ("sec", "mm/sec", "deg/sec"):
-        name, scale = UNITS[unit]
-        if getattr(speed, name) is not None:
-            return f"{amount(getattr(speed, name) / scale)}{unit}"
-    return f"{amount(100 * speed.joint_fraction)}%" if isinstance(move, MoveJ) else "max_speed"
+    found = pace_of(move, speed)
+    return "max_speed" if found is None else f"{amount(found[1])}{found[0]}"
 
 
 def zone_text(zone: Zone) -> str:
@@ -77,7 +77,7 @@ def position(index: int, target: Target, frames: tuple[str, str]) -> str:
     """The text of a position."""
     if target.external:
         raise InputError("external axes are not written")
-    values = [number(v) for v in numbers_of(target)]
+    values = [number(v) for v in XYZ.numbers(target)]
     head = f"P[{index}]{{\n   GP1:\n\tUF : {frames[0]}, UT : {frames[1]},"
     if isinstance(target, JointTarget):
         axes = [f"\tJ{k + 1}= {v:>9} deg" for k, v in enumerate(values)]
@@ -104,29 +104,18 @@ class Writer:
     frames: Numbering[Pose] = field(default_factory=lambda: Numbering("frames", 9))
     _in: tuple[int, int] | None = None
 
-    def text(self, program: Program, name: str) -> str:
+    def text(self, name: str, lines: list[str]) -> str:
         """The whole file."""
-        said = lines_of_statements(program, self._wait, self._opaque, self._move)
-        lines = [*self.before, *self.setup, *said, *self.after]
-        numbered = "".join(f"{k + 1:>4}:{line} ;\n" for k, line in enumerate(lines))
+        body = [*self.before, *self.setup, *(f"  {one.lstrip()}" for one in lines), *self.after]
+        numbered = "".join(f"{k + 1:>4}:{line} ;\n" for k, line in enumerate(body))
         return f"{HEAD.format(name=name)}{numbered}/POS\n{''.join(self.positions)}{TAIL}"
 
-    def _wait(self, wait: Wait) -> Iterator[str]:
-        yield f"  WAIT {amount(wait.duration)}(sec)"
+    def wait(self, wait: Wait) -> str:
+        """A wait."""
+        return f"WAIT {amount(wait.duration)}(sec)"
 
-    def _opaque(self, kept: Opaque) -> Iterator[str]:
-        if self.options.opaque is OpaqueStyle.KEEP:
-            yield f"  {kept.text}"
-            return
-        yield from self._remark(kept.text)
-
-    def _remark(self, kept: str) -> Iterator[str]:
-        text = " ".join(kept.removeprefix(TP.comment).replace(";", ",").split())
-        for at in range(0, len(text), _REMARK):
-            yield f"  !{text[at : at + _REMARK]}"
-
-    def _move(self, move: Move, *_: object) -> Iterator[str]:
-        check_said(move, TP, "TP")
+    def move(self, move: Move) -> Iterator[str]:
+        """A motion instruction, and the frames that it is in."""
         frame = self._number(
             self.frames,
             "UFRAME",
@@ -155,7 +144,7 @@ class Writer:
             if self.options.opaque is OpaqueStyle.KEEP:
                 options += self._event(event)
             else:
-                yield from self._remark(event.text)
+                yield from remark(event.text)
         pace, zone = speed_text(move, move.speed), zone_text(move.zone)
         yield f"{kind} {' '.join(names)} {pace} {zone}{options}"
 
@@ -179,6 +168,13 @@ class Writer:
             self.positions.append(position(index, PoseTarget(pose), ("F", "F")))
             self.setup += [f"  PR[{_SCRATCH}]=P[{index}]", f"  {word}[{found}]=PR[{_SCRATCH}]"]
         return found
+
+
+def remark(kept: str) -> Iterator[str]:
+    """Lines of comment."""
+    text = " ".join(kept.removeprefix(TP.comment).replace(";", ",").split())
+    for at in range(0, len(text), _REMARK):
+        yield f"!{text[at : at + _REMARK]}"
 
 
 def program_name(name: str) -> str:
