@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...errors import SourceError
 from ..execution.provenance import MovePart
 from ..execution.scopes import unknown_name
-from .expressions import Datum, Expression, Number
+from .expressions import Datum, Expression, Number, Operation
 from .program import Grammar, LineProgram
 from .statements import AssignAll, Numbers, Operand
 from .values import Literal, Unknown, Values, element
@@ -83,7 +83,9 @@ class Data:
             sources = tuple(map(self.values.source_of, operand.numbers)) or (
                 Literal(operand.span, None, ()),
             )
-            return numbers, MovePart(operand.span, sources if any(sources) else ())
+            computed = any(isinstance(one, Operation) for one in operand.numbers)
+            known = any(sources) and not computed
+            return numbers, MovePart(operand.span, sources if known else ())
         numbers, sources = self.point(operand.point)
         point = sources[:1] if len({id(source) for source in sources}) == 1 else sources
         return numbers, MovePart(operand.span, point if any(sources) else ())

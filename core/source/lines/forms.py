@@ -8,7 +8,17 @@ from dataclasses import replace
 from typing import ClassVar
 
 from ...errors import InputError
-from .expressions import USUAL, Datum, Expression, Number, Operation, Spelling, Truth, parse
+from .expressions import (
+    USUAL,
+    Datum,
+    Expression,
+    Number,
+    Operation,
+    Spelling,
+    Truth,
+    parse,
+    parse_all,
+)
 from .program import Grammar, Said, several
 from .statements import (
     Assign,
@@ -59,6 +69,7 @@ class FormGrammar(Grammar):
 
     def __init__(self) -> None:
         self._selected: list[tuple[Expression, bool]] = []
+        self._blocks: list[bool] = []  # whether each that is open is a selection
         self._table = _table(type(self))
 
     def statement(self, line: Line) -> Said:
@@ -182,6 +193,7 @@ class FormGrammar(Grammar):
 
     def opened(self, line: Line, found: Found) -> Statement:
         """A block begins that is carried out on a ``condition``."""
+        self._blocks.append(False)
         return Open(line.span, self.parse(line, found, "condition"))
 
     def otherwise(self, line: Line, found: Found) -> Statement:
@@ -189,8 +201,11 @@ class FormGrammar(Grammar):
         asked = found.groupdict().get("condition")
         return Otherwise(line.span, self.parse(line, found, "condition") if asked else None)
 
-    def closed(self, line: Line, found: Found) -> Statement:
-        """A block ends."""
+    def closed(self, line: Line, found: Found) -> Said:
+        """A block, a loop or a selection ends; there is nothing of a selection without cases."""
+        if self._blocks and self._blocks.pop():
+            begun = self._selected.pop()[1]
+            return Close(line.span) if begun else None
         return Close(line.span)
 
     def selected(self, line: Line, found: Found) -> Said:
@@ -198,7 +213,10 @@ class FormGrammar(Grammar):
         ``value``, and an ``action``."""
         datum = self.parse(line, found, "datum")
         self._selected.append((datum, False))
-        return self.case(line, found) if found.groupdict().get("value") else None
+        if found.groupdict().get("value"):
+            return self.case(line, found)
+        self._blocks.append(True)
+        return None
 
     def case(self, line: Line, found: Found) -> Statement:
         """A case of one ``value`` or of several, or of none of them; what is done stands in
@@ -211,10 +229,13 @@ class FormGrammar(Grammar):
             raise InputError("nothing that is compared stands before it")
         datum, begun = self._selected[-1]
         self._selected[-1] = datum, True
-        condition = None
+        condition: Expression | None = None
         if found.groupdict().get("value"):
-            condition = self.parse(line, found, "value")
-            condition = Operation(condition.span, "=", (datum, condition))
+            for one in parse_all(line.source, *found.span("value"), self.spelling):
+                same = Operation(one.span, "=", (datum, one))
+                condition = (
+                    same if condition is None else Operation(one.span, "OR", (condition, same))
+                )
         action = found.groupdict().get("action")
         if action is None:
             return _case(line, condition, begun)
@@ -223,11 +244,6 @@ class FormGrammar(Grammar):
             assert condition is not None
             return If(line.span, condition, body)
         return Otherwise(line.span, condition, body.statements[0])
-
-    def deselected(self, line: Line, found: Found) -> Said:
-        """The last case ends."""
-        begun = self._selected.pop()[1] if self._selected else True
-        return Close(line.span) if begun else None
 
     def counted(self, line: Line, found: Found) -> Statement:
         """A ``counter`` goes from ``first`` to ``last`` by ``step``, downwards if there is a group
@@ -239,6 +255,7 @@ class FormGrammar(Grammar):
             if not isinstance(given, Number) or given.value == 0:
                 raise InputError("a loop counts by a number that is written out")
             step = given.value
+        self._blocks.append(False)
         return Open(
             line.span,
             counter=self.datum(line, found, "counter"),
@@ -251,10 +268,13 @@ class FormGrammar(Grammar):
         """A loop begins, while a ``condition`` holds if it has one."""
         asked = found.groupdict().get("condition")
         condition = self.parse(line, found, "condition") if asked else None
+        self._blocks.append(False)
         return Open(line.span, condition, repeats=True)
 
     def until(self, line: Line, found: Found) -> Statement:
         """A loop ends, when a ``condition`` holds."""
+        if self._blocks:
+            self._blocks.pop()
         return Close(line.span, self.parse(line, found, "condition"))
 
     def wait(self, line: Line, found: Found) -> Statement:

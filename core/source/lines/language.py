@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
@@ -26,7 +27,7 @@ from .files import with_called
 from .interpreter import run_lines
 from .patcher import patch_lines
 from .positions import PositionForm
-from .program import Grammar, LineProgram, plain_lines, read_lines
+from .program import Grammar, Initial, LineProgram, plain_lines, read_lines
 from .statements import Line
 
 
@@ -54,6 +55,7 @@ class LineLanguage:
         suffix: of the files that it writes.
         dialect: what it has words for.
         positions: how it says positions.
+        trailing: what begins a comment behind a statement; ``""`` for none.
         called: in a text, names of the programs that it calls, whose files stand beside; None for
             programs in one file.
         always: names of files, in lower case, that are read wherever they stand beside.
@@ -63,6 +65,7 @@ class LineLanguage:
     suffix: str
     dialect: Dialect
     positions: PositionForm
+    trailing: str = ""
     called: re.Pattern[str] | None = None
     always: tuple[str, ...] = ()
 
@@ -74,7 +77,11 @@ class LineLanguage:
 
     def lines(self, source: SourceText) -> Iterable[Line]:
         """What of a text is one statement each."""
-        return plain_lines(source)
+        return plain_lines(source, self.trailing)
+
+    def initial(self) -> Initial:
+        """What registers hold at first, by word and number (`LineProgram.data`)."""
+        return {}
 
     def program(self, text: str, file: str) -> LineProgram:
         """The routines, points and data of one file."""
@@ -175,4 +182,5 @@ class LineLanguage:
         first, *others = (self.program(source.text, file) for file, source in files.items())
         for other in others:
             first = first.with_file(other)
-        return run_lines(first, self.grammar(), options)
+        data = {**self.initial(), **first.data}
+        return run_lines(replace(first, data=data), self.grammar(), options)

@@ -47,6 +47,10 @@ class Grammar:
         raise NotImplementedError
 
 
+Initial = Mapping[tuple[str, int | None], Numbers | Value]
+"""What registers hold, by word and number; the number of one that there is once is None."""
+
+
 @dataclass(frozen=True)
 class LineProgram:
     """The routines of some files.
@@ -56,8 +60,7 @@ class LineProgram:
         texts: of the files, by name.
         routines: by lower-case name; the lines before the first named one are called "".
         points: points by file and `point_key`.
-        data: what registers hold at first, by word and number; of one that there is once the number
-            is None.
+        data: what registers hold at first.
         own: keys of the routines of the first file that have names, in order.
     """
 
@@ -65,7 +68,7 @@ class LineProgram:
     texts: Mapping[str, str]
     routines: Mapping[str, Body]
     points: Mapping[tuple[str, str, int | None], NumberedPoint] = field(default_factory=dict)
-    data: Mapping[tuple[str, int | None], Numbers | Value] = field(default_factory=dict)
+    data: Initial = field(default_factory=dict)
     own: tuple[str, ...] = ()
 
     def text_of(self, span: Span) -> str:
@@ -83,10 +86,17 @@ class LineProgram:
         )
 
 
-def plain_lines(source: SourceText) -> Iterator[Line]:
-    """The lines of a text that are not blank."""
+def plain_lines(source: SourceText, comment: str = "") -> Iterator[Line]:
+    """The lines of a text that are not blank.
+
+    Args:
+        comment: what begins a comment behind a statement, outside of quotes; ``""`` for none.
+    """
+    sign = re.escape(comment) or "(?!)"
+    spoken = re.compile(rf"(?:\"[^\"]*\"|(?!{sign}).)*")
     for found in _LINE.finditer(source.text):
-        words = found[0].strip()
+        said = spoken.match(found[0])
+        words = "" if said is None else said[0].strip()
         if words:
             start = found.start() + len(found[0]) - len(found[0].lstrip())
             yield Line(source, start, start + len(words))

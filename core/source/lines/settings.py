@@ -7,7 +7,7 @@ sets, in which units, and until when it holds; reading, writing and patching fol
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -135,9 +135,8 @@ class Settings:
 
     def operand(self, line: Line, kind: UseKind) -> Operand:
         """The speed or zone of a move that states none itself."""
-        at = line.source.span(line.start, line.start)
-        words = [one.word for one in self._of(kind)]
-        return Operand(at, tuple(Datum(at, word, None) for word in words))
+        span = line.span
+        return Operand(span, tuple(Datum(span, one.word, None) for one in self._of(kind)))
 
     def speed(self, numbers: Numbers, joint: bool) -> Speed:
         """The speed that the numbers of `operand` make.
@@ -205,22 +204,28 @@ class Settings:
         if put_back:
             yield Edit(behind, put_back, use.index)
 
-    def unsaid(self, motion: re.Pattern[str]) -> Callable[[str], Iterator[Unsaid]]:
+    def unsaid(
+        self, motion: re.Pattern[str], others: Sequence[str] = ()
+    ) -> Callable[[str], Iterator[Unsaid]]:
         """Finds where settings are set and used, for `core.dialect.Wording.unsaid`.
 
         Args:
             motion: a line that drives.
+            others: words that set what holds and is no number: tools and frames.
         """
+        begins = [(re.compile(rf"{re.escape(w)}\b", re.IGNORECASE), w) for w in others]
 
         def found(text: str) -> Iterator[Unsaid]:
             for line in re.finditer(r"[^\s;][^\r\n;]*", text):
                 said = line[0].rstrip()
                 words = [one.word for one in self.settings if one.pattern.fullmatch(said)]
+                words += [word for pattern, word in begins if pattern.match(said)]
                 place = line.start(), line.start() + len(said)
                 if words:
                     yield Unsaid(words[0], *place, given=True)
                 elif motion.match(said):
-                    yield from (Unsaid(one.word, *place) for one in self.settings)
+                    every = (*(one.word for one in self.settings), *others)
+                    yield from (Unsaid(word, *place) for word in every)
 
         return found
 

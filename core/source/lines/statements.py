@@ -112,7 +112,7 @@ class Operand:
     """A part of a move: a point, or numbers at the move or held by settings.
 
     Args:
-        span: of it; where nothing stands at the move, of where words of its own would be put.
+        span: of it; of the whole move where that says nothing of it.
         numbers: one expression each; empty if it is a point. A datum stands for what it was set
             to: a register, a setting (`core.source.lines.settings`).
         point: the point.

@@ -71,7 +71,6 @@ class Grammar(FormGrammar):
         "until": r"UNTIL\s+(?P<condition>.*)",
         "selected": r"SELECT\s+(?P<datum>\w+)",
         "case": r"CASE\s+(?P<value>.*)|ELSE",
-        "deselected": r"ENDSELECT",
         "closed": r"END",
         "wait": r"WAIT\s+(?P<time>.*)",
         "both": r"TWICE\s+(?P<time>.*)",
@@ -245,7 +244,7 @@ def test_loops_cases_and_several_statements_on_a_line() -> None:
     assert waits("n = 5\nREPEAT\nWAIT n\nn = n + 1\nUNTIL n > 6") == [5, 6]
     assert waits("TWICE 2") == [2, 2]
     for n, then in ((1, 1), (2, 4), (3, 9)):
-        text = f"n = {n}\nSELECT n\nCASE 1\nWAIT 1\nCASE 2\nWAIT 4\nELSE\nWAIT 9\nENDSELECT"
+        text = f"n = {n}\nSELECT n\nCASE 1\nWAIT 1\nCASE 2\nWAIT 4\nELSE\nWAIT 9\nEND"
         assert waits(text) == [then]
     with pytest.raises(SourceError, match="unknown point 'NOWHERE'"):
         read("JMOVE nowhere\n")
