@@ -30,6 +30,8 @@ class _Motion:
         events: what happens on the way; it does not change the motion.
         open: why nobody knows where it goes; empty if that is known. Its target then only has a
             name, and it cannot be driven.
+        unsettled: why nobody knows how it is driven, though its target is known; empty if that is
+            known. It cannot be driven either, but the robot stands at its target afterwards.
         origin: where in the source the numbers stand; not part of the value.
     """
 
@@ -41,6 +43,7 @@ class _Motion:
     load: Load | None = None
     events: tuple[Event, ...] = field(default=(), kw_only=True)
     open: str = field(default="", kw_only=True)
+    unsettled: str = field(default="", kw_only=True)
     origin: MoveOrigin | None = field(default=None, compare=False, kw_only=True)
 
     def __repr__(self) -> str:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from flyby.core.errors import ParseError, SourceError
+from flyby.core.driving.past_faults import drive
+from flyby.core.errors import FaultCause, ParseError, SourceError
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
@@ -204,3 +206,101 @@ def test_a_part_of_a_program_is_read_as_all_of_it(language, text) -> None:
 
 def told(made: Program) -> str:
     return " ".join(note.message for note in made.notes)
+
+
+def test_comments_of_other_languages_in_rapid_are_comments() -> None:
+    made = read(
+        "abb",
+        'TPWrite "http://plc\\\\a"; ! as it should be',
+        f"{HOME['abb']}// first; home",
+        "n:=2;\\\\ and so on, (",
+        f"{LOW['abb']} // down",
+    )
+    assert [bool(move.open) for move in made.moves] == [False, False]
+    (note,) = (n for n in made.notes if "begins no comment in RAPID" in n.message)
+    assert note.span is not None
+    assert note.span.line == 5
+
+
+def test_a_module_without_its_end_is_read() -> None:
+    text = "MODULE demo\nPROC main()\n{}\nENDPROC\n"
+    made = read("abb", HOME["abb"], LOW["abb"], text=text)
+    assert len(made.moves) == 2
+    assert any("ENDMODULE is missing" in note.message for note in made.notes)
+    with pytest.raises(ParseError):
+        read("abb", HOME["abb"], LOW["abb"], text=text, goes_on=False)
+
+
+TWICE = (
+    "MODULE demo\nPERS num high:=100;\nPERS num high:={again};\nCONST robtarget p:="
+    "[[450,0,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\n{}\nENDPROC\n"
+    "PROC main()\nStop;\nENDPROC\nENDMODULE\n"
+)
+
+
+@pytest.mark.parametrize(("again", "known"), [(" 100", True), ("120", False)])
+def test_a_datum_that_is_declared_twice_is_known_if_both_agree(again: str, known: bool) -> None:
+    line = "MoveL Offs(p,0,0,high),v100,fine,tool0;"
+    made = read("abb", HOME["abb"], line, text=TWICE.replace("{again}", again))
+    assert [bool(move.open) for move in made.moves] == [False, not known]
+    said = [note.message for note in made.notes if "is declared twice" in note.message]
+    assert len(said) == 2
+    assert "main is declared twice: first at line 5: no controller takes this" in said[0]
+    with pytest.raises(SourceError, match="is declared twice"):
+        read("abb", line, text=TWICE.replace("{again}", again), goes_on=False)
+
+
+SETTINGS = (
+    ("VelSet 10 100;", "VelSet 100,5000;"),
+    ("VelSet 0,100;", "VelSet 100,5000;"),
+    ("VelSet n,;", "VelSet 50,5000;"),
+    ("AccSet 50 50;", "AccSet 100,100;"),
+    ("AccSet;", "AccSet 100,100;"),
+    ("ConfL \\Of;", "ConfL \\Off;"),
+    ("GripLoad load0 load0;", "GripLoad load0;"),
+    ("PathAccLim TRUE;", "PathAccLim FALSE,FALSE;"),
+    ("SpeedRefresh 150;", "SpeedRefresh 100;"),
+)
+"""A damaged setting, and one that makes it known again."""
+
+
+@pytest.mark.parametrize(("damaged", "whole"), SETTINGS)
+def test_a_damaged_setting_leaves_open_how_moves_behind_it_are_driven(damaged, whole) -> None:
+    line = LOW["abb"].replace("MoveJ", "MoveL")
+    made = read("abb", HOME["abb"], damaged, line, line, whole, line)
+    assert [bool(move.unsettled) for move in made.moves] == [False, True, True, False]
+    assert not any(move.open for move in made.moves)
+    assert f"{damaged.partition(' ')[0].rstrip(';')}" in made.moves[1].unsettled
+    with pytest.raises(SourceError):
+        read("abb", HOME["abb"], damaged, line, goes_on=False)
+
+
+@pytest.mark.parametrize("damaged", ["PDispSet;", "PDispSet [[0,0,0],[1,0,0,0];", "EOffsSet 1;"])
+def test_a_damaged_displacement_leaves_open_where_moves_go(damaged: str) -> None:
+    end = "EOffsOff;" if damaged.startswith("E") else "PDispOff;"
+    made = read("abb", HOME["abb"], damaged, LOW["abb"], end, LOW["abb"])
+    assert [bool(move.open) for move in made.moves] == [False, True, False]
+
+
+def test_no_time_is_claimed_across_a_damaged_setting() -> None:
+    robot = find_robot(ROBOTS["abb"])
+    controller = Controller(find_vendor("abb"), robot)
+    up = LOW["abb"].replace("500]", "600]")
+    made = read("abb", LOW["abb"], up, "VelSet 10 100;", LOW["abb"], "VelSet 100,5000;", up)
+    driven = drive(controller, made)
+    assert [(fault.move, fault.cause) for fault in driven.faults] == [(2, FaultCause.OPEN)]
+    assert [part.first for part in driven.parts] == [0, 3]
+
+
+def test_no_default_is_taken_for_what_is_damaged() -> None:
+    text = FRAME["abb"].replace("VAR num n;", "VAR num n:=3+;\nCONST speeddata v:=[1,2,3 4];")
+    lines = (
+        "MoveJ Offs([[450,0,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],0,0,1+n),v100,"
+        "fine,tool0;",
+        LOW["abb"].replace("v100", "v"),
+        "WaitTime n;",
+        LOW["abb"],
+    )
+    made = read("abb", HOME["abb"], *lines, text=text)
+    assert [bool(move.open) for move in made.moves] == [False, True, False, False]
+    assert [bool(move.unsettled) for move in made.moves] == [False, False, True, False]

@@ -142,8 +142,8 @@ class RouteFinder:
             raise _no_move(program)
         before: Move | None = None
         for i, move in enumerate(moves):
-            if move.open:
-                raise located(move, i, move.open, FaultCause.OPEN)
+            if move.open or move.unsettled:
+                raise located(move, i, move.open or move.unsettled, FaultCause.OPEN)
             if i not in skipped:
                 check_near(move, i, before)
                 before = move

@@ -14,7 +14,8 @@ from ...errors import InputError, Note, ParseError, SourceError, Span
 from ...files.reading import read_bytes
 from .damage import Damage
 
-UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_WIDE = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
+"""Codecs of two bytes a character, by the mark that their files begin with."""
 LARGEST_FILE = 20_000_000
 """Bytes. The largest programs seen have two million; what is larger is no program."""
 MOST_LINES = 500_000
@@ -28,7 +29,8 @@ class SourceFile:
     Args:
         name: as the user named it, for messages and spans.
         text: without a byte-order mark; ends of line as they stand in the file.
-        codec: of Python's, such as ``utf-8``, ``utf-8-sig``, ``cp1252``.
+        codec: of Python's, such as ``utf-8``, ``utf-8-sig``, ``cp1252``, ``utf-16-le`` (whose files
+            begin with a mark).
     """
 
     name: str
@@ -43,7 +45,7 @@ class SourceFile:
             InputError: the text holds a character that the codec has not.
         """
         try:
-            return self.text.encode(self.codec)
+            return _WIDE.get(self.codec, b"") + self.text.encode(self.codec)
         except UnicodeEncodeError as error:
             character = self.text[error.start]
             raise InputError(
@@ -94,18 +96,24 @@ def decode(source: str | bytes, file: str) -> tuple[str, str]:
 
     Files come as UTF-8, with or without a byte-order mark, and as Windows code page 1252, which
     RobotStudio and older controllers write; in a few others (comments in GBK, say) every byte is
-    kept as one Latin-1 character, which changes nothing outside comments and strings.
+    kept as one Latin-1 character, which changes nothing outside comments and strings. Editors of
+    Windows save UTF-16 too, which begins with a mark; `file_notes` says that controllers do not
+    read it.
 
     Raises:
-        SourceError: the bytes are UTF-16.
+        SourceError: the bytes begin as UTF-16 does, and are none.
     """
     if isinstance(source, str):
         return source, "utf-8"
-    if source.startswith(UTF16):
-        raise SourceError(
-            "the file is UTF-16, which controllers do not read; save it as UTF-8",
-            Span(file, 1, 1, 0, 0),
-        )
+    for codec, mark in _WIDE.items():
+        if source.startswith(mark):
+            try:
+                return source[len(mark) :].decode(codec), codec
+            except UnicodeDecodeError:
+                raise SourceError(
+                    "the file begins as UTF-16 does and is cut off or damaged; save it as UTF-8",
+                    Span(file, 1, 1, 0, 0),
+                ) from None
     if source.startswith(codecs.BOM_UTF8):
         candidates = ["utf-8-sig", "latin-1"]
     else:
@@ -154,7 +162,17 @@ def unbroken(text: str) -> str:
     return _STRAY.sub(" ", text) if "\r" in text and "\n" in text else text
 
 
-def stray_return(file: SourceFile) -> Note | None:
+def file_notes(file: SourceFile) -> list[Note]:
+    """What is to be said of a file whatever its language."""
+    notes = []
+    if file.codec in _WIDE:
+        message = "the file is UTF-16, which controllers do not read: save it as UTF-8 for them"
+        notes.append(Note(message, span=Span(file.name, 1, 1, 0, 0)))
+    stray = _stray_return(file)
+    return notes if stray is None else [*notes, stray]
+
+
+def _stray_return(file: SourceFile) -> Note | None:
     """A note on the first carriage return that ends no line, where editors show one."""
     text = file.text
     found = _TELLING.search(text) if "\r" in text and "\n" in text else None

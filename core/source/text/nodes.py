@@ -7,8 +7,9 @@ the language folds them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
+from itertools import zip_longest
 
 from ...errors import SourceError, Span
 
@@ -28,6 +29,26 @@ class Composed:
         yield self
         for part in self.parts:
             yield from part.walk()
+
+
+def same_form(first: Composed | None, second: Composed | None) -> bool:
+    """Whether two expressions say the same, wherever and with whatever blanks they are written."""
+    if first is None or second is None:
+        return first is second
+    pairs = zip_longest(first.walk(), second.walk())
+    return all(type(a) is type(b) and _said(a) == _said(b) for a, b in pairs)
+
+
+def _said(node: Composed | None) -> list[object]:
+    """What a node says besides its parts."""
+    names: list[str] = [f.name for f in fields(node)] if is_dataclass(node) else []
+    return [_plain(getattr(node, name)) for name in names if name not in ("span", "text")]
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, tuple):
+        return tuple(map(_plain, value))
+    return None if isinstance(value, (Node, Composed)) else value
 
 
 class Expression(Composed):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import codecs
+
 import pytest
 
 from flyby.core.errors import SourceError
@@ -159,8 +161,15 @@ def test_decoding_keeps_every_byte():
     for data in (b"abc", "é".encode(), b"\xef\xbb\xbfabc", b"\xe9\x80", bytes(range(256))):
         text, codec = decode(data, "a.mod")
         assert text.encode(codec) == data
-    with pytest.raises(SourceError, match="UTF-16"):
-        read("MODULE M ENDMODULE".encode("utf-16"), "a.mod")
+
+
+@pytest.mark.parametrize("codec", ["utf-16", "utf-16-be"])
+def test_wide_modules_are_read(codec):
+    text = f"MODULE M ! größer\nPROC main() MoveJ {P},v100,fine,tool0; ENDPROC ENDMODULE"
+    mark = codecs.BOM_UTF16_BE if codec == "utf-16-be" else b""
+    made = read(mark + text.encode(codec), "a.mod")
+    assert len(made.moves) == 1
+    assert any("the file is UTF-16, which controllers do not read" in n.message for n in made.notes)
 
 
 @pytest.mark.parametrize("prefix", [b"\xef\xbb\xbf", b"! Gr\xf6\xdfe\r\n", b"! \xc3\xb6\n", b""])

@@ -148,11 +148,11 @@ def test_a_damaged_file_says_where(tmp_path, krl):
         assert caught.value.span.line == line, text
 
 
-def test_utf16_is_refused(tmp_path):
+def test_utf16_is_read(tmp_path):
     path = tmp_path / "a.src"
-    path.write_bytes("DEF a( )\nEND".encode("utf-16"))
-    with pytest.raises(SourceError, match="UTF-16"):
-        Krl().read_file(path, ReadOptions())
+    path.write_bytes("DEF a( )\nHALT\nEND".encode("utf-16"))
+    notes = Krl().read_file(path, ReadOptions()).notes
+    assert any("UTF-16, which controllers do not read" in note.message for note in notes)
 
 
 @pytest.mark.parametrize(

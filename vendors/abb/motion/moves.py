@@ -23,7 +23,7 @@ from ....core.source.execution.provenance import MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Invoke, Name
 from ..values.arguments import Bound, bind
-from ..values.defaults import nominal
+from ..values.defaults import default_of, nominal
 from ..values.evaluator import Evaluator
 from ..values.located import Located
 from ..values.provenance import Literal, source_of_literal
@@ -114,11 +114,13 @@ class _MoveReader:
         self.scope = scope
         self.bound = bound
         self.record: Record = ()
+        self.unsettled = ""
         for option, why in _LEFT_OUT.items():
             if option in bound.options:
                 run.out.notes.count(f"\\{option.upper()}: {why}", bound.option_spans[option])
 
     def pose_target(self, name: str, follow: bool) -> tuple[PoseTarget, MovePart]:
+        self._refuse_lost("displacement", "offsets")
         expression = self.bound.named(name)
         found = self._found(expression, "target", ROBTARGET)
         target = self.run.convert.pose_target(
@@ -139,6 +141,7 @@ class _MoveReader:
         offsets = "useeoffs" in self.bound.options or (
             not arm_stays and "noeoffs" not in self.bound.options
         )
+        self._refuse_lost(*(("offsets",) if offsets else ()))
         target = self.run.convert.joint_target(
             self._with_arm(found.value) if arm_stays else found.value,
             name,
@@ -148,6 +151,11 @@ class _MoveReader:
         self.record = _record(found.value)
         moved = arm_stays or (offsets and self.run.settings.now.offsets is not None)
         return target, _part_of(expression.span, None if moved else found.source)
+
+    def _refuse_lost(self, *settings: str) -> None:
+        lost = self.run.settings.lost_of(settings)
+        if lost:
+            raise NotDriven(f"the target of {self.bound.text} depends on {lost}")
 
     def _with_arm(self, value: Value) -> Value:
         """A jointtarget with the arm's present joint values."""
@@ -213,6 +221,17 @@ class _MoveReader:
         evaluator.check_located(found, type_, use, expression.span)
         return found
 
+    def _settled(self, expression: Expression, kind: str, type_: Type) -> Located:
+        """A value that says how the move is driven and not where to: where nobody knows it, the
+        move keeps its target."""
+        try:
+            return self._found(expression, kind, type_)
+        except NotDriven as error:
+            self.unsettled = self.unsettled or str(error)
+            value = default_of(type_)
+            assert value is not None
+            return Located(value, None, None, type=type_)
+
     def _tool(self) -> Tool:
         if "Tool" not in self.bound.names:
             return self.run.position.tool
@@ -253,7 +272,7 @@ class _MoveReader:
 
     def _speed(self) -> tuple[Speed, MovePart]:
         expression = self.bound.named("Speed")
-        found = self._found(expression, "speed", SPEEDDATA)
+        found = self._settled(expression, "speed", SPEEDDATA)
         assert isinstance(found.value, tuple)
         name = _datum_name(found, expression)
         speed = self.run.convert.speed(
@@ -274,7 +293,7 @@ class _MoveReader:
         if "Zone" not in self.bound.names:
             return FINE, MovePart(self.bound.span)
         expression = self.bound.named("Zone")
-        found = self._found(expression, "zone", ZONEDATA)
+        found = self._settled(expression, "zone", ZONEDATA)
         part = self._part(found, expression, ("z", "inpos"))
         if "inpos" in self.bound.options:
             return FINE, part
@@ -308,6 +327,23 @@ def _part_of(span: Span, source: Literal | None, predefined: str | None = None) 
     return MovePart(span, () if source is None else (source,), predefined)
 
 
+_OF_ALL = (
+    "override",
+    "refreshed",
+    "greatest_tcp",
+    "acceleration",
+    "ramp",
+    "path_acceleration",
+    "world_acceleration",
+    "load",
+)
+"""Settings that say how every move is driven, and not where to."""
+_OF_KIND = {
+    "joint": ("check_joint",),
+    "linear": ("check_linear",),
+    "circular": ("check_linear", "arc"),
+}
+"""Those of some moves."""
 _LEFT_OUT = {
     "corr": "corrections from a sensor come at run time: the move is driven as it is programmed",
     "id": "moves that other robots make at the same time (MultiMove) are not at hand: this robot "
@@ -349,12 +385,16 @@ def read_move(
         target, part = reader.pose_target("ToPoint", follow)
     common, speed_part, zone_part = reader.common()
     parts = MoveParts(bound.span, part, speed_part, zone_part, via_part)
+    lost = run.settings.lost_of((*_OF_ALL, *_OF_KIND.get(form.kind, ())))
+    unsettled = f"how {bound.text} is driven depends on {lost}" if lost else reader.unsettled
     if arc is not None:
         assert via is not None and isinstance(target, PoseTarget)
-        move: Move = MoveC(target, *common, events=events, via=via, orientation=arc)
+        move: Move = MoveC(
+            target, *common, events=events, unsettled=unsettled, via=via, orientation=arc
+        )
     else:
         kind = MoveL if form.kind == "linear" else MoveJ
-        move = kind(target, *common, events=events)
+        move = kind(target, *common, events=events, unsettled=unsettled)
     return move, parts, reader.record
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.tool import Load
@@ -57,6 +59,27 @@ class Settings:
 
 @dataclass(slots=True)
 class SettingsInForce:
-    """The settings that hold now: instructions put others in their place."""
+    """The settings that hold now: instructions put others in their place.
+
+    Attributes:
+        now: values of them.
+        lost: by the name of a setting, why nobody knows what it is: who set it last is damaged.
+    """
 
     now: Settings = Settings()
+    lost: dict[str, str] = field(default_factory=dict)
+
+    def change(self, **settings: object) -> None:
+        """Settings that are known from here on."""
+        values: dict[str, Any] = dict(settings)
+        self.now = replace(self.now, **values)
+        for name in settings:
+            self.lost.pop(name, None)
+
+    def lose(self, names: Iterable[str], why: str) -> None:
+        """From here on nobody knows what these settings are, until they are set again."""
+        self.lost |= dict.fromkeys(names, why)
+
+    def lost_of(self, names: Iterable[str]) -> str:
+        """Why one of these settings is not known; empty if all are."""
+        return next((self.lost[name] for name in names if name in self.lost), "")

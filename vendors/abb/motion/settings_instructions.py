@@ -7,8 +7,7 @@ WorldAccLim, SpeedRefresh, CirPathMode, GripLoad, PDispSet.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from ....core.errors import SourceError
 from ....core.program.arc_orientation import ArcOrientation
@@ -54,8 +53,7 @@ def _conf(setting: str) -> SettingsHandler:
 
     def change(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
         switch = _one_switch(bind(invoke, (), ("on", "off")), "on")
-        changed: dict[str, Any] = {setting: switch == "on"}
-        run.settings.now = replace(run.settings.now, **changed)
+        run.settings.change(**{setting: switch == "on"})
 
     return change
 
@@ -65,15 +63,14 @@ def _none(setting: str) -> SettingsHandler:
 
     def change(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
         bind(invoke, (), ())
-        changed: dict[str, Any] = {setting: None}
-        run.settings.now = replace(run.settings.now, **changed)
+        run.settings.change(**{setting: None})
 
     return change
 
 
 def _sing_area(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     switch = _one_switch(bind(invoke, (), ("wrist", "lockaxis4", "off")), "off")
-    run.settings.now = replace(run.settings.now, singularity=switch)
+    run.settings.change(singularity=switch)
 
 
 def _acc_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -93,7 +90,7 @@ def _acc_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
         )
     share = max(acceleration, LEAST_ACCELERATION) / 100
     ramp = max(min(ramps), LEAST_RAMP) / 100
-    run.settings.now = replace(run.settings.now, acceleration=share, ramp=ramp)
+    run.settings.change(acceleration=share, ramp=ramp)
 
 
 def _vel_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -102,7 +99,7 @@ def _vel_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     greatest = _number(run, bound, 1, VMAX[0], scope)
     if greatest <= 0:
         raise SourceError(f"VelSet: the greatest speed is above zero, not {greatest:g}", bound.span)
-    run.settings.now = replace(run.settings.now, override=override / 100, greatest_tcp=greatest)
+    run.settings.change(override=override / 100, greatest_tcp=greatest)
 
 
 def _number(run: SettingsRun, bound: Bound, index: int, otherwise: float, scope: Scope) -> float:
@@ -140,7 +137,7 @@ def _path_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
             "taken for both",
             bound.span,
         )
-    run.settings.now = replace(run.settings.now, path_acceleration=min(limits, default=None))
+    run.settings.change(path_acceleration=min(limits, default=None))
 
 
 def _cir_path_mode(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -150,7 +147,7 @@ def _cir_path_mode(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
         "pathframe": ArcOrientation.FOLLOWS_ARC,
         "objectframe": ArcOrientation.FIXED_FRAME,
     }
-    run.settings.now = replace(run.settings.now, arc=known.get(switch, switch))
+    run.settings.change(arc=known.get(switch, switch))
 
 
 def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -163,13 +160,13 @@ def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     else:
         message = f"GripLoad: the payload is {unknown.reason}; none is taken"
         run.out.notes.once("payload", message, invoke.span)
-    run.settings.now = replace(run.settings.now, load=load)
+    run.settings.change(load=load)
 
 
 def _pdisp_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("DispFrame",), ())
     frame = run.evaluator.known(bound.value(0), scope, POSE, "PDispSet")
-    run.settings.now = replace(run.settings.now, displacement=run.convert.pose(frame, bound.span))
+    run.settings.change(displacement=run.convert.pose(frame, bound.span))
 
 
 def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -191,7 +188,7 @@ def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     displacement = Pose((shift[0], shift[1], shift[2]))
     if "rot" in bound.options:
         displacement = executed @ programmed.inverse()
-    run.settings.now = replace(run.settings.now, displacement=displacement)
+    run.settings.change(displacement=displacement)
 
 
 def _point(run: SettingsRun, expression: Expression, scope: Scope) -> Pose:
@@ -204,7 +201,7 @@ def _eoffs_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("EAxOffs",), ())
     offsets = run.evaluator.known(bound.value(0), scope, EXTJOINT, "EOffsSet")
     assert isinstance(offsets, tuple)
-    run.settings.now = replace(run.settings.now, offsets=offsets)
+    run.settings.change(offsets=offsets)
 
 
 def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -218,7 +215,7 @@ def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     assert isinstance(programmed, tuple) and isinstance(executed, tuple)
     pairs = zip(executed[3], programmed[3], strict=True)
     offsets = tuple(e - p if max(abs(e), abs(p)) < UNUSED_AXIS else 0.0 for e, p in pairs)
-    run.settings.now = replace(run.settings.now, offsets=offsets)
+    run.settings.change(offsets=offsets)
 
 
 def _world_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -235,7 +232,7 @@ def _world_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
             "path, as PathAccLim's",
             bound.span,
         )
-    run.settings.now = replace(run.settings.now, world_acceleration=limit)
+    run.settings.change(world_acceleration=limit)
 
 
 def _speed_refresh(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -248,7 +245,7 @@ def _speed_refresh(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
         why = "it holds the robot until another one comes; it is taken as not there"
         run.out.notes.count(f"SpeedRefresh 0: {why}", bound.span)
         return
-    run.settings.now = replace(run.settings.now, refreshed=percent / 100)
+    run.settings.change(refreshed=percent / 100)
 
 
 SETTINGS: dict[str, SettingsHandler] = {
@@ -269,3 +266,20 @@ SETTINGS: dict[str, SettingsHandler] = {
     "worldacclim": _world_acc_lim,
     "speedrefresh": _speed_refresh,
 }
+_DISPLACED = ("displacement",)
+_OFFSET = ("offsets",)
+SETS: dict[str, tuple[str, ...]] = {
+    "confj": ("check_joint",),
+    "confl": ("check_linear",),
+    "singarea": ("singularity",),
+    "accset": ("acceleration", "ramp"),
+    "velset": ("override", "greatest_tcp"),
+    "pathacclim": ("path_acceleration",),
+    "cirpathmode": ("arc",),
+    "gripload": ("load",),
+    **dict.fromkeys(("pdispset", "pdispoff", "pdispon"), _DISPLACED),
+    **dict.fromkeys(("eoffsset", "eoffson", "eoffsoff"), _OFFSET),
+    "worldacclim": ("world_acceleration",),
+    "speedrefresh": ("refreshed",),
+}
+"""Names of the settings that each sets: nobody knows them behind one that is damaged."""

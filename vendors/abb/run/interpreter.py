@@ -7,6 +7,7 @@ where a move does, it is refused.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -29,6 +30,7 @@ from ....core.source.reading import ReadOptions
 from ..motion.kinematics import RobotFunctions
 from ..motion.position import Position
 from ..motion.settings import SettingsInForce
+from ..motion.settings_instructions import SETS
 from ..motion.targets import Converter
 from ..syntax import tree
 from ..values.data import Globals
@@ -36,7 +38,7 @@ from ..values.defaults import nominal
 from ..values.errors import BOOKED, NO_ROUTINE, NUMBERS, ProgramError
 from ..values.evaluator import Evaluator
 from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable, unknown_name
-from ..values.types import STRING, Scalar, Unknown, Value, interpreted, mismatch
+from ..values.types import STRING, Scalar, Unknown, Value, find_unknown, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .flow import run_for, run_if, run_test, run_while
@@ -44,6 +46,8 @@ from .instructions import INTERPRETED, MOVING, refusal
 from .kept import KEPT, REFUSED
 from .recovery import Frame, Retry, TryNext, raised, recover
 from .traps import connect, share_written
+
+_HEAD = re.compile(r"\w+")
 
 
 class _Returned(Exception):
@@ -299,10 +303,13 @@ class Interpreter:
         """What is damaged: nobody knows what it does to what it names."""
         step = self.tree.unread(statement, scope.home)
         line = f"line {statement.span.line}"
+        head = _HEAD.match(self.out.text_of(statement.span))
+        if head is not None:
+            self.settings.lose(SETS.get(head[0].lower(), ()), f"{head[0]}, damaged in {line}")
         if isinstance(statement.target, tree.Name):
             reason = f"the value of {statement.target.text}, damaged in {line}"
             with suppress(SourceError):  # a constant stays one
-                unknown = Unknown(reason, statement.span)
+                unknown = Unknown(reason, statement.span, lost=True)
                 self.evaluator.assign(statement.target, unknown, scope)
         for body in step.calls:
             share_written(self, body, f"a damaged call in {line}", statement.span)
@@ -357,9 +364,10 @@ class Interpreter:
         if handler is not None:
             self.evaluator.reader = self.out.move_index if name in MOVING else ELSEWHERE
             try:
+                self._refuse_lost(statement, scope)
                 handler(self, statement, scope)
             except SourceError as error:
-                if name not in MOVING or not self._open_move(error, statement.span):
+                if not self._gone_on(statement, error):
                     raise
             self.evaluator.reader = ELSEWHERE
             return
@@ -377,6 +385,34 @@ class Interpreter:
         if not self.out.leaves_open(error, span):
             return False
         self.lost(span)
+        return True
+
+    def _refuse_lost(self, statement: tree.Invoke, scope: Scope) -> None:
+        """Raises:
+        SourceError: a setting is made of what is damaged.
+        """
+        if statement.name not in SETS:
+            return
+        for argument in statement.arguments:
+            if argument.value is not None:
+                unknown = find_unknown(self.evaluator.evaluate(argument.value, scope))
+                if unknown is not None and unknown.lost:
+                    raise SourceError(
+                        f"{statement.text} depends on {unknown.reason}", statement.span
+                    )
+
+    def _gone_on(self, statement: tree.Invoke, error: SourceError) -> bool:
+        """Whether the program goes on behind an instruction that cannot be carried out: a move
+        stays open, and of what a setting sets nobody knows the value."""
+        settings = SETS.get(statement.name)
+        if settings is None:
+            return statement.name in MOVING and self._open_move(error, statement.span)
+        if not self.course.answers.mends or isinstance(error, ProgramError):
+            return False
+        message = str(error).removeprefix(f"{error.span}: ")
+        self.out.notes.count(f"{message}: what it sets is not known from here on", statement.span)
+        self.settings.lose(settings, f"{statement.text} in line {statement.span.line}: {message}")
+        self.out.keep(statement.span, statement.text, "")
         return True
 
     def _missing(self, statement: tree.Invoke, scope: Scope) -> None:

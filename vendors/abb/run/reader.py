@@ -133,6 +133,7 @@ def _program(
     data = Globals(
         [module for modules in parsed.values() for module in modules],
         Library(beside(files, main, names), loaded=options.beside is not None, mended=mended),
+        mended=mended,
     )
     own: list[Module] = [m for n in names if n == main or main not in parsed for m in parsed[n]]
     name, given = entry_call(options.entry)

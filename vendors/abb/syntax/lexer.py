@@ -51,6 +51,8 @@ _TOKEN = re.compile(
     )""",
     re.VERBOSE,
 )
+_FOREIGN = ("/", "\\")
+_LINE_END = re.compile(r"[\r\n]")
 _BLANK = re.compile(r"(?:[\s\ufeff\x1a]++|![^\r\n]*+)*+")
 _HEADER = re.compile(r"[\s\ufeff]*%%%.*?%%%", re.DOTALL)
 _ESCAPE = re.compile(r'""|\\\\|\\([0-9a-fA-F]{2})')
@@ -89,7 +91,36 @@ def tokenize(source: SourceText) -> Tokens:
     header = _HEADER.match(text)
     start = header.end() if header else 0
     found = _LEXICON.tokens(source, text, start=start, special={LITERAL: literal})
-    return Tokens(source, text, 0, found.kinds, found.starts, found.ends, values)
+    tokens = Tokens(source, text, 0, found.kinds, found.starts, found.ends, values)
+    if source.damage is not None and ("//" in text or "\\\\" in text):
+        return _without_foreign_comments(tokens)
+    return tokens
+
+
+def _without_foreign_comments(tokens: Tokens) -> Tokens:
+    """A damaged text without what follows ``//`` or ``\\\\``, with which other languages comment
+    and no expression goes on: none of its lines has anything but a comment behind it."""
+    source, text, damage = tokens.source, tokens.text, tokens.source.damage
+    kept: list[int] = []
+    over, said = -1, False
+    for index, (kind, start) in enumerate(zip(tokens.kinds, tokens.starts, strict=True)):
+        if start < over:
+            continue
+        if kind in _FOREIGN and text.startswith(kind, start + 1):
+            end = _LINE_END.search(text, start)
+            over = len(text) if end is None else end.start()
+            if damage is not None and not said:
+                said = True
+                error = source.error(f"{kind}{kind} begins no comment in RAPID, as ! does", start)
+                damage.step_over(error, "what follows on its line is read as one")
+            continue
+        kept.append(index)
+    new = {old: index for index, old in enumerate(kept)}
+    kinds = [tokens.kinds[i] for i in kept]
+    starts = [tokens.starts[i] for i in kept]
+    ends = [tokens.ends[i] for i in kept]
+    values = {new[old]: value for old, value in tokens.values.items() if old in new}
+    return Tokens(source, text, 0, kinds, starts, ends, values)
 
 
 _decode = json.JSONDecoder(parse_int=float).decode

@@ -88,10 +88,17 @@ def _content(
         text: its name.
         end: kind of the token that ends it.
     """
+    damage = cursor.source.damage
     types: list[RecordDefinition | AliasDefinition] = []
     declarations: list[Declaration] = []
     routines: list[Routine] = []
     while cursor.kind != end:
+        if cursor.kind == END and damage is not None:
+            missing = cursor.source.error(
+                f"ENDMODULE is missing, to end MODULE {text}", cursor.start
+            )
+            damage.step_over(missing, "the module is taken to end with the file")
+            break
         begin = cursor.start
         local = cursor.accept("local")
         if not local:
@@ -135,7 +142,7 @@ def _mended(cursor: Cursor, start: int, local: bool = False) -> list[Declaration
     try:
         return [_declaration(cursor, start, local)]
     except ParseError as error:
-        cursor.step_over(error)
+        cursor.step_over(error, "it is stepped over, and what it declares is not known")
         found = _declared(cursor, begin, start, local, error.message)
         cursor.depth = depth
         cursor.skip_statement(begin, (*_PARTS, *CLOSING))

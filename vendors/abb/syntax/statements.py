@@ -55,7 +55,7 @@ def _unread(cursor: Cursor, begin: int, depth: int, error: SourceError) -> tree.
     Raises:
         SourceError: it is not.
     """
-    cursor.step_over(error)
+    cursor.step_over(error, "it is stepped over, and what it would set is not known from there on")
     cursor.depth = depth
     cursor.skip_statement(begin, _BEGINNING)
     span = cursor.source.span(cursor.starts[begin], cursor.end)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from types import MappingProxyType
 
 from ....core.errors import Note, SourceError, Span
+from ....core.source.text.nodes import Unreadable, same_form
 from ..syntax.tree import AliasDefinition, Declaration, Module, RecordDefinition, Routine
 from .library import Library
 from .predefined import CONSTANTS, ERRNO, RECORDS, USER_CLOCK, USER_NUMBERS
@@ -22,22 +24,29 @@ class Globals:
     Args:
         modules: loaded from the beginning.
         library: modules that are taken in when they are needed.
+        mended: whether a name that is declared twice, which no controller takes, is read all the
+            same: the first routine and type are kept, and of a datum whose declarations differ
+            nobody knows the value.
 
     Attributes:
         errno: holds the error that a handler is run for.
 
     Raises:
-        SourceError: a name is declared twice.
+        SourceError: a name is declared twice, and that is not mended.
     """
 
-    def __init__(self, modules: Sequence[Module], library: Library) -> None:
+    def __init__(
+        self, modules: Sequence[Module], library: Library, *, mended: bool = False
+    ) -> None:
         self.modules: list[Module] = []
         self.notes: list[Note] = []
         self.routines: dict[str, Routine] = {}
         self.types: dict[str, Type] = dict(BUILT_IN)
         self._library = library
+        self._mended = mended
         self._missed: set[str] = set()
         self._names: set[str] = set()
+        self._definitions: dict[str, Span] = {}
         controller = _controller()
         self.errno = controller.cells[ERRNO]
         self._shared = Scope("", outer=controller)
@@ -140,7 +149,8 @@ class Globals:
             table = home.routines if routine.local else self.routines
             before = table.get(routine.name)
             if before is not None:
-                raise _twice(routine.text, routine.span, before.span)
+                self._twice(routine.text, routine.span, before.span, "the first is kept")
+                continue
             table[routine.name] = routine
             if not routine.local:
                 self._names.add(routine.name)
@@ -148,20 +158,46 @@ class Globals:
     def _add_datum(self, declaration: Declaration, own: Scope) -> None:
         scope = own if declaration.local else self._shared
         before = scope.cells.get(declaration.name)
-        if before is not None:
-            first = before.declared.span if before.declared is not None else None
-            raise _twice(declaration.text, declaration.span, first)
+        if before is not None and before.declared is not None:
+            declaration = self._doubled(before.declared, declaration)
         # What is evaluated later sees its own module's names, wherever the datum is found.
         scope.cells[declaration.name] = self._cell(declaration, own)
         if not declaration.local:
             self._names.add(declaration.name)
+
+    def _doubled(self, first: Declaration, second: Declaration) -> Declaration:
+        """What is read of two declarations of one datum."""
+        if same_form(first.value, second.value) and first.type == second.type:
+            self._twice(second.text, second.span, first.span, "both are the same")
+            return first
+        then = f"which value {first.text} has is not known"
+        message = self._twice(second.text, second.span, first.span, then)
+        return replace(first, value=Unreadable(second.span, message))
+
+    def _twice(self, name: str, span: Span, first: Span, then: str) -> str:
+        """Say that a name is declared twice.
+
+        Raises:
+            SourceError: that is not mended.
+        """
+        where = f"at line {first.line}"
+        if first.file != span.file:
+            where = f"in {first.file}, line {first.line}"
+        message = f"{name} is declared twice: first {where}"
+        if not self._mended:
+            raise SourceError(message, span)
+        self.notes.append(Note(f"{message}: no controller takes this; {then}", span=span))
+        return message
 
     def _add_types(self, module: Module, home: Home) -> None:
         """Declared types may use those that are declared before them."""
         for definition in module.types:
             table = home.types if definition.local else self.types
             if definition.name in table and not isinstance(table[definition.name], Foreign):
-                raise SourceError(f"type {definition.name} is declared twice", definition.span)
+                first = self._definitions.get(definition.name, definition.span)
+                self._twice(f"type {definition.name}", definition.span, first, "the first is kept")
+                continue
+            self._definitions.setdefault(definition.name, definition.span)
             table[definition.name] = self._type(definition, home)
             if not definition.local:
                 self._names.add(definition.name)
@@ -175,13 +211,6 @@ class Globals:
                 raise SourceError(f"component {name} is declared twice", definition.span)
             components[name] = self.type(type_name, home, definition.span)
         return RecordType(definition.name, MappingProxyType(components))
-
-
-def _twice(name: str, span: Span, first: Span | None) -> SourceError:
-    where = "" if first is None else f": first in {first.file}, line {first.line}"
-    if first is not None and first.file == span.file:
-        where = f": first at line {first.line}"
-    return SourceError(f"{name} is declared twice{where}", span)
 
 
 def _controller() -> Scope:

@@ -70,6 +70,8 @@ def nominal(value: Value, type_: Type | None = None) -> Value | None:
         type_: of the value, None if it is not known.
     """
     if isinstance(value, Unknown):
+        if value.lost:
+            return None
         known = value.nominal
         if known is not None and (type_ is None or mismatch(known, type_) is None):
             return known
@@ -92,6 +94,8 @@ def carried(unknown: Unknown, compute: Callable[[], Value | None]) -> Unknown:
     Args:
         compute: gives it of the defaults.
     """
+    if unknown.lost:
+        return unknown
     try:
         value = compute()
     except (ArithmeticError, ValueError, TypeError):

@@ -121,7 +121,7 @@ class Evaluator:
             return function_value(self, self._host.call_function, self._special, expression, scope)
         if isinstance(expression, tree.Unreadable):
             reason = f"what no controller takes (line {expression.span.line}: {expression.message})"
-            return Unknown(reason, expression.span)
+            return Unknown(reason, expression.span, lost=True)
         return _star(expression)
 
     def locate(self, expression: tree.Expression, scope: Scope, asking: bool = True) -> Located:
@@ -161,6 +161,8 @@ class Evaluator:
         if unknown is None:
             return value
         taken = nominal(value, type_)
+        if taken is None and unknown.lost and self.reader is ELSEWHERE:
+            taken = default_of(type_)  # a wait, a message: nothing is driven by it
         if taken is None:
             raise refuse_unknown(unknown, use, span)
         if type_ is SPEEDDATA and isinstance(taken, tuple) and not taken[0] > 0:

@@ -63,7 +63,7 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
         return _numbers(symbol, left, right)
     if symbol in ("and", "or", "xor"):
         return _logic(symbol, left, right)
-    unknown = find_unknown(left) or find_unknown(right)
+    unknown = find_unknown((left, right))
     if unknown is not None:
         return carried(unknown, lambda: _of_defaults(symbol, left, right))
     if symbol in ("=", "<>"):
@@ -143,9 +143,9 @@ def _logic(symbol: str, left: Value, right: Value) -> Value:
         return False
     if symbol == "or" and True in known:
         return True
-    for value in (left, right):
-        if isinstance(value, Unknown):
-            return value
+    unknown = find_unknown((left, right))
+    if unknown is not None:
+        return unknown
     return left != right if symbol == "xor" else symbol == "and"
 
 

@@ -27,12 +27,14 @@ class Unknown:
         span: where it came into the program.
         key: under which the user may answer it.
         nominal: what it is if all that is not known is at its default; None if that is none.
+        lost: whether the text that gives it is damaged, so that no default can be taken for it.
     """
 
     reason: str
     span: Span
     key: str = ""
     nominal: Value | None = None
+    lost: bool = False
 
 
 Value = float | bool | str | Record | Unknown
@@ -145,15 +147,18 @@ def interpreted(value: Value, type_: Type, span: Span) -> Value:
 
 
 def find_unknown(value: Value) -> Unknown | None:
-    """The first part of a value that is not known."""
+    """The first part of a value that is not known, of those that are lost if there is one."""
     if isinstance(value, Unknown):
         return value
+    first = None
     if isinstance(value, tuple):
         for part in value:
             found = find_unknown(part)
-            if found is not None:
-                return found
-    return None
+            if found is not None and (first is None or found.lost):
+                first = found
+                if found.lost:
+                    break
+    return first
 
 
 _FLOATS = {float}
