@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..core.errors import FlybyError, InputError, OptionError
-from ..core.program.entry_point import ALL
+from ..core.errors import EntryError, FlybyError, InputError, OptionError
+from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with
 from ..tasks.emulate import EmulateOptions, emulate_with
@@ -23,10 +23,11 @@ from ..tasks.files.outputs import (
 )
 from ..tasks.pages.of_results import page_bytes
 from ..tasks.read import SourceOptions, read_with
-from .output.console import fail, print_json, print_rich, progress
+from .output.console import fail, print_json, print_rich, progress, warn, warn_of
 from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
+    from ..core.program.program import Program
     from ..tasks.results.runs import Run
 
 
@@ -89,24 +90,23 @@ def emulate(
         check_folder("--write", outputs.pop("--write"))
     inputs = [program, *source.inputs()]
     check_outputs(outputs, inputs, replace_existing=force)
+    given = [option for option, path in outputs.items() if path is not None]
+    if json:
+        given.append("--json")
     if source.entry == ALL:
-        given = [option for option, path in outputs.items() if path is not None]
-        if given or json:
-            raise OptionError(
-                f"{given[0] if given else '--json'} is of one program: name one entry, not all"
-            )
+        if given:
+            raise OptionError(f"{given[0]} is of one program: name one entry, not all")
         _each(program, source, options)
         return
     with progress("reading the program") as say:
-        read = read_with(program, source)
-        try:
-            run = emulate_with(read, replace(options, report=say))
-        except FlybyError:
-            from .output.report_text import print_questions
-
-            print_questions(read.questions)
-            raise
-        say("writing results")
+        read = _begun(program, source, each=not given)
+        if not isinstance(read, str):
+            run = _driven(read, replace(options, report=say))
+            say("writing results")
+    if isinstance(read, str):
+        _each(program, source, options, read)
+        return
+    with progress("writing results"):
         made = _write_files(files, run, inputs, opaque, force)
     _tell(run, as_json=json)
     if not json:
@@ -116,14 +116,49 @@ def emulate(
         raise typer.Exit(1)
 
 
-def _each(program: Path, source: SourceOptions, options: EmulateOptions) -> None:
-    """Drive every routine that a program may begin with, and report each."""
+def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | str:
+    """The program, read; or why it begins nowhere in particular.
+
+    Args:
+        each: whether each of its routines may be driven instead.
+    """
+    if not each or source.entry is not None:
+        return read_with(program, source)
+    try:
+        read = read_with(program, source)
+    except EntryError as error:
+        return str(error).partition(": choose as the entry")[0]
+    if read.moves or not others_drive(read.entries):
+        return read
+    return f"{program}: {read.name} drives nothing as it begins"
+
+
+def _driven(read: Program, options: EmulateOptions) -> Run:
+    """A program, driven; where it cannot be, what was said of it on the way is said first."""
+    try:
+        return emulate_with(read, options)
+    except FlybyError:
+        from .output.report_text import print_questions
+
+        warn_of(note for note in read.notes if not (note.asked and read.questions))
+        print_questions(read.questions)
+        raise
+
+
+def _each(program: Path, source: SourceOptions, options: EmulateOptions, why: str = "") -> None:
+    """Drive every routine that a program may begin with, and report each.
+
+    Args:
+        why: where nobody has asked for each of them.
+    """
     with progress("reading the program"):
-        entries = read_with(program, source).entries
+        entries = read_with(program, replace(source, entry=ALL)).entries
     moving = [entry for entry in entries if entry.moves]
     if not moving:
-        raise InputError(f"{program}: no routine in it moves the robot")
-    failed = False
+        raise InputError(f"{program}: no routine in it moves the robot: there is nothing to drive")
+    if why:
+        warn(f"{why}: each routine that moves the robot is driven by itself; --entry names one")
+    failed = all(entry.parameters for entry in moving)
     for entry in moving:
         print_rich(f"\n{entry}")
         if entry.parameters:
@@ -132,12 +167,13 @@ def _each(program: Path, source: SourceOptions, options: EmulateOptions) -> None
         try:
             with progress(f"driving {entry.name}") as say:
                 read = read_with(program, replace(source, entry=entry.name))
-                run = emulate_with(read, replace(options, report=say))
+                run = _driven(read, replace(options, report=say))
         except FlybyError as error:
             fail(str(error))
             failed = True
         else:
             _tell(run, as_json=False)
+            failed = failed or bool(run.faults)
     if failed:
         raise typer.Exit(1)
 

@@ -79,6 +79,10 @@ class SourceError(FlybyError):
         self.span = span
 
 
+class EntryError(SourceError):
+    """Nobody says with which routine a program begins, and none is clearly the first."""
+
+
 class LeftOpenError(SourceError):
     """What a statement does depends on what only the running controller knows."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..display import counted
@@ -22,11 +22,13 @@ class EntryPoint:
         name: as it is declared.
         parameters: names of those that must be given.
         moves: statements in it, and in what it calls, that move the robot.
+        begun: whether the program was begun with it.
     """
 
     name: str
     parameters: tuple[str, ...]
     moves: int
+    begun: bool = False
 
     def __str__(self) -> str:
         arguments = f"({', '.join(self.parameters)})" if self.parameters else ""
@@ -38,6 +40,11 @@ def listed(entries: Iterable[EntryPoint]) -> str:
     found = sorted(entries, key=lambda entry: not entry.moves)
     more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
     return ", ".join(map(str, found[:_SHOWN])) + more
+
+
+def others_drive(entries: Sequence[EntryPoint]) -> bool:
+    """Whether a program drives nothing because it was begun with a routine that never does."""
+    return any(e.moves for e in entries) and not any(e.moves for e in entries if e.begun)
 
 
 def entry_call(entry: str | None) -> tuple[str | None, str | None]:

@@ -13,7 +13,7 @@ from ..errors import FlybyError, Note
 from ..program.question import QuestionKind
 from .execution.answers import Answers
 from .execution.limits import EndlessError, Executed, ExecutionLimits
-from .text.files import SourceFile, file_notes
+from .text.files import SourceFile, stray_return, wide_file
 
 if TYPE_CHECKING:
     from ..program.program import Program
@@ -124,9 +124,9 @@ def read_with(
         read: a vendor's function from files to a program.
     """
     program = _to_known_places(files, main, options, read)
-    of_files = (note for file in files.values() for note in file_notes(file))
+    stray = filter(None, (wide_file(files[main]), *map(stray_return, files.values())))
     reading = Reading(dict(files), main, options, read)
-    return replace(program, notes=(*program.notes, *of_files), reading=reading)
+    return replace(program, notes=(*program.notes, *stray), reading=reading)
 
 
 def _to_known_places(

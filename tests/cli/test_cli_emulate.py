@@ -255,3 +255,49 @@ def test_clearances_are_told_with_bodies_move_and_line(flyby: Flyby) -> None:
     told = " ".join(result.stdout.split())
     assert "to the cell: 40.0 mm between bottle 1 and bottle 2 (move 4, line 18)" in told
     assert "clearance between the arm's own parts:" in told
+
+
+PLACES = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+TURN = f"MoveAbsJ [[%d,0,0,0,30,0],{PLACES}],v1000,fine,tool0;"
+
+
+def two_routines(tmp_path: Path, *bodies: str, damaged: str = "") -> Path:
+    routines = "".join(
+        f"PROC {name}()\n{body}\nENDPROC\n" for name, body in zip("abc", bodies, strict=False)
+    )
+    path = tmp_path / "two.mod"
+    path.write_text(f"MODULE two\n{damaged}{routines}ENDMODULE\n")
+    return path
+
+
+def test_a_file_without_a_beginning_is_driven_routine_by_routine(
+    flyby: Flyby, tmp_path: Path
+) -> None:
+    path = two_routines(tmp_path, *(f"{TURN % 0}\n{TURN % n}" for n in (10, 20)), "WaitTime 1;")
+    result = flyby("emulate", path, "--robot", ROBOT)
+    assert result.exit_code == 0
+    assert [line for line in result.stdout.splitlines() if line.endswith("(2 moves)")] == [
+        "a (2 moves)",
+        "b (2 moves)",
+    ]
+    assert "there is no PROC main: each routine that moves the robot is driven" in result.stderr
+    result = flyby("emulate", path, "--robot", ROBOT, "--json")
+    assert result.exit_code == 1
+    assert "choose as the entry one of a (2 moves), b (2 moves), c (no moves)" in result.stderr
+
+
+def test_what_moves_nothing_is_refused_as_such(flyby: Flyby, tmp_path: Path) -> None:
+    path = two_routines(tmp_path, "WaitTime 1;", "Stop;")
+    result = flyby("emulate", path, "--robot", ROBOT)
+    assert result.exit_code == 1
+    assert "no routine in it moves the robot: there is nothing to drive" in result.stderr
+    assert "warning" not in result.stderr
+
+
+def test_an_error_leaves_standing_what_was_said_before_it(flyby: Flyby, tmp_path: Path) -> None:
+    damaged = "CONST robtarget p:=[[1,2 3],[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+    path = two_routines(tmp_path, "MoveJ p,v100,fine,tool0;", damaged=damaged)
+    result = flyby("emulate", path, "--robot", ROBOT)
+    assert result.exit_code == 1
+    assert "two.mod:2:26: the number 3 stands where" in " ".join(result.stderr.split())
+    assert "error: " in result.stderr

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from flyby.core.errors import SourceError
+from flyby.core.errors import EntryError, SourceError
+from flyby.core.program.entry_point import others_drive
 from flyby.core.program.program import Program
 from flyby.core.registry import find_vendor
 from flyby.core.source.reading import ReadOptions
@@ -94,3 +95,52 @@ def test_arguments_that_are_none_are_refused(vendor: str, arguments: str) -> Non
         return
     with pytest.raises(SourceError):
         read(vendor, f"Pick({arguments})")
+
+
+SEVERAL = {
+    "abb": "MODULE m\nPROC A()\n{0}\nENDPROC\nPROC B()\n{1}\nENDPROC\nENDMODULE\n",
+    "ur": "def A():\n{0}\nend\ndef B():\n{1}\nend\n",
+}
+STILL = {
+    "abb": "MODULE m\nPROC main()\nWaitTime 1;\nENDPROC\nPROC B()\n{1}\nENDPROC\nENDMODULE\n",
+    "kuka": "DEF m()\nWAIT SEC 1\nEND\nDEF B()\n{1}\nEND\n",
+    "ur": "def main():\nsleep(1)\nend\ndef B():\n{1}\nend\n",
+}
+MOVES = {
+    "abb": [f"MoveAbsJ [[0,0,0,0,{n}0,0],[{EXTERNAL}]],v1000,fine,tool0;" for n in (3, 4)],
+    "kuka": [f"PTP {{A1 0,A2 -90,A3 90,A4 0,A5 {n},A6 0}}" for n in (10, 20)],
+    "ur": [f"movej([0,-1.5,1.5,0,0.{n},0])" for n in (1, 2)],
+}
+
+
+@pytest.mark.parametrize("vendor", SEVERAL)
+def test_a_program_without_a_beginning_says_so(vendor: str) -> None:
+    reader = find_vendor(vendor).reader
+    assert reader is not None
+    text = SEVERAL[vendor].format(*MOVES[vendor])
+    with pytest.raises(EntryError, match=r"choose as the entry one of A \(1 move\), B"):
+        reader.read(text, TEXTS[vendor][0], ReadOptions())
+
+
+@pytest.mark.parametrize("vendor", STILL)
+def test_a_program_whose_beginning_never_drives_tells_who_does(vendor: str) -> None:
+    reader = find_vendor(vendor).reader
+    assert reader is not None
+    made = reader.read(
+        STILL[vendor].replace("{1}", MOVES[vendor][0]), TEXTS[vendor][0], ReadOptions()
+    )
+    assert not made.moves
+    assert others_drive(made.entries)
+    assert [entry.begun for entry in made.entries] == [True, False]
+
+
+def test_functions_that_move_are_entries_of_rapid() -> None:
+    reader = find_vendor("abb").reader
+    assert reader is not None
+    text = (
+        f"MODULE m\nFUNC num Seek(num n)\n{MOVES['abb'][0]}\nRETURN n;\nENDFUNC\n"
+        "FUNC num Twice(num n)\nRETURN 2*n;\nENDFUNC\nENDMODULE\n"
+    )
+    with pytest.raises(EntryError, match=r"one of Seek\(n\) \(1 move\); all drives"):
+        reader.read(text, "m.mod", ReadOptions())
+    assert len(reader.read(text, "m.mod", ReadOptions("Seek(3)")).moves) == 1

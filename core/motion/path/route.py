@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
-from ...program.entry_point import listed
+from ...program.entry_point import listed, others_drive
 from ...program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
@@ -488,9 +488,14 @@ def _steps(segments: Segments, which: range) -> tuple[Samples, IntArray]:
 
 def _no_move(program: Program) -> MotionError:
     reading = program.reading
+    entries = program.entries
     offer = "choose as the entry the routine that drives"
-    if any(entry.moves for entry in program.entries):
-        offer += f": {listed(program.entries)}"
+    if others_drive(entries):
+        offer += f": {listed(entries)}"
+    elif any(entry.moves for entry in entries):
+        offer = "none of those in it is come to; `flyby ask` lists what its course depends on"
+    elif entries:
+        offer = "no routine in it moves the robot"
     return MotionError(
         f"program {program.name!r} has no move: {offer}",
         span=None if reading is None else Span(reading.main, 1, 1, 0, 0),

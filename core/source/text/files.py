@@ -97,7 +97,7 @@ def decode(source: str | bytes, file: str) -> tuple[str, str]:
     Files come as UTF-8, with or without a byte-order mark, and as Windows code page 1252, which
     RobotStudio and older controllers write; in a few others (comments in GBK, say) every byte is
     kept as one Latin-1 character, which changes nothing outside comments and strings. Editors of
-    Windows save UTF-16 too, which begins with a mark; `file_notes` says that controllers do not
+    Windows save UTF-16 too, which begins with a mark; `wide_file` says that controllers do not
     read it.
 
     Raises:
@@ -162,17 +162,15 @@ def unbroken(text: str) -> str:
     return _STRAY.sub(" ", text) if "\r" in text and "\n" in text else text
 
 
-def file_notes(file: SourceFile) -> list[Note]:
-    """What is to be said of a file whatever its language."""
-    notes = []
-    if file.codec in _WIDE:
-        message = "the file is UTF-16, which controllers do not read: save it as UTF-8 for them"
-        notes.append(Note(message, span=Span(file.name, 1, 1, 0, 0)))
-    stray = _stray_return(file)
-    return notes if stray is None else [*notes, stray]
+def wide_file(file: SourceFile) -> Note | None:
+    """A note on an encoding that controllers do not read."""
+    if file.codec not in _WIDE:
+        return None
+    message = "the file is UTF-16, which controllers do not read: save it as UTF-8 for them"
+    return Note(message, span=Span(file.name, 1, 1, 0, 0))
 
 
-def _stray_return(file: SourceFile) -> Note | None:
+def stray_return(file: SourceFile) -> Note | None:
     """A note on the first carriage return that ends no line, where editors show one."""
     text = file.text
     found = _TELLING.search(text) if "\r" in text and "\n" in text else None

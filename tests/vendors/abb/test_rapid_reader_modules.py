@@ -201,7 +201,7 @@ def test_entries_that_are_refused():
         read(text, "x.mod")
     with pytest.raises(SourceError, match="unknown procedure 'c'"):
         read(text, "x.mod", ReadOptions("c"))
-    with pytest.raises(SourceError, match="no procedure without parameters"):
+    with pytest.raises(SourceError, match="no routine in it can be run"):
         read(module("D", "VAR num k;"), "x.sys")
 
 

@@ -305,7 +305,7 @@ def test_entries():
         read(two, "a.mod")
     with pytest.raises(SourceError, match="takes arguments"):
         read(two, "a.mod", ReadOptions("needs"))
-    with pytest.raises(SourceError, match="no procedure"):
+    with pytest.raises(SourceError, match="no routine in it can be run"):
         read("MODULE M\nENDMODULE", "a.mod")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
-from ....core.errors import Note, SourceError, Span
+from ....core.errors import EntryError, Note, SourceError, Span
 from ....core.program.entry_point import EntryPoint, listed
 from ....core.source.text.files import SourceText
 from ..syntax.parser import parse
@@ -20,13 +20,19 @@ ENTRY = "--entry"
 """What the text of a user's arguments is called in messages."""
 
 
-def entry_points(data: Globals, own: Sequence[Module]) -> tuple[EntryPoint, ...]:
-    """The procedures of the user's file."""
+def entry_points(
+    data: Globals, own: Sequence[Module], begun: Routine | None = None
+) -> tuple[EntryPoint, ...]:
+    """The procedures of the user's file, and the functions that move the robot.
+
+    Args:
+        begun: the routine that the program was begun with.
+    """
+    counted = [(r, count_moves(data, r)) for module in own for r in module.routines]
     return tuple(
-        EntryPoint(r.text, tuple(p.name for p in _needed(r)), count_moves(data, r))
-        for module in own
-        for r in module.routines
-        if r.kind == "proc"
+        EntryPoint(r.text, tuple(p.name for p in _needed(r)), moves, r is begun)
+        for r, moves in counted
+        if r.kind == "proc" or (r.kind == "func" and moves)
     )
 
 
@@ -64,7 +70,7 @@ def choose_entry(
         SourceError: there is no such procedure, it takes arguments, or several would do.
     """
     where = own[0].span if own else Span(file, 1, 1, 0, 0)
-    found = _procedure(data, own, entry or MAIN, where, fetch=entry is not None)
+    found = _routine(data, own, entry or MAIN, where, fetch=entry is not None)
     if found is not None:
         if not _startable(found) and not arguments:
             names = ", ".join(p.name for p in _needed(found))
@@ -81,16 +87,18 @@ def choose_entry(
         if chosen is not None:
             message = f"there is no PROC main; {why}, {chosen.text}, is read"
             return chosen, (Note(message, span=chosen.span),)
-    if not routines:
-        raise SourceError("there is no procedure without parameters that could be run", where)
-    message = unknown_name("procedure", entry or MAIN, [r.text for r in routines])
-    names = listed(entry_points(data, own))
-    offer = "give those with arguments theirs, as Pick(1,p10)" if not candidates else ""
-    raise SourceError(
-        f"{message.split(':')[0]}: choose as the entry one of {names}; all drives each of them"
-        f"{f'; {offer}' if offer else ''}",
-        where,
+    points = entry_points(data, own)
+    if not points:
+        message = "no routine in it can be run: it holds data, or functions that move nothing"
+        raise SourceError(message, where)
+    lacks = "there is no PROC main"
+    if entry is not None:
+        lacks = unknown_name("procedure", entry, [point.name for point in points]).split(":")[0]
+    offer = "" if candidates else "; give those with arguments theirs, as Pick(1,p10)"
+    message = (
+        f"{lacks}: choose as the entry one of {listed(points)}; all drives each of them{offer}"
     )
+    raise (EntryError if entry is None else SourceError)(message, where)
 
 
 def _needed(routine: Routine) -> list[Parameter]:
@@ -101,12 +109,12 @@ def _startable(routine: Routine) -> bool:
     return not _needed(routine)
 
 
-def _procedure(
+def _routine(
     data: Globals, own: Sequence[Module], name: str, where: Span, fetch: bool
 ) -> Routine | None:
     for module in own:
         for routine in module.routines:
-            if routine.name == name.lower() and routine.kind == "proc":
+            if routine.name == name.lower() and routine.kind in ("proc", "func"):
                 return routine
     found = data.routines.get(name.lower())
     if found is None and fetch:

@@ -157,7 +157,7 @@ def _program(
         data.module_of(entry).text,
         notes=(*notes, *torn, *run.notes()),
         questions=run.course.questions(),
-        entries=() if driven else entry_points(data, own),
+        entries=() if driven else entry_points(data, own, entry),
         calls=tuple(run.out.calls),
         cycle=run.course.cycle,
         sections=run.course.sections.found(run.course.cycle),

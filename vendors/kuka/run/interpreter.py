@@ -183,11 +183,16 @@ class Interpreter:
         """Whether the robot was moved."""
         return self._transcript.move_index > 0
 
-    def entry_points(self, routines: Sequence[Routine]) -> tuple[EntryPoint, ...]:
-        """Those of the routines that return nothing."""
+    def entry_points(
+        self, routines: Sequence[Routine], begun: Routine | None = None
+    ) -> tuple[EntryPoint, ...]:
+        """Those of the routines that return nothing; ``begun`` is the one that was run."""
         return tuple(
             EntryPoint(
-                r.text, tuple(p.name for p in r.parameters), self._analysis.move_count(r.body)
+                r.text,
+                tuple(p.name for p in r.parameters),
+                self._analysis.move_count(r.body),
+                r is begun,
             )
             for r in routines
             if r.returns is None

@@ -85,7 +85,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
             entry.text,
             notes=(*notes, *run.notes()),
             questions=run.course.questions(),
-            entries=() if run.driven else run.entry_points(library.main_unit.routines),
+            entries=() if run.driven else run.entry_points(library.main_unit.routines, entry),
             calls=run.calls(),
             cycle=run.course.cycle,
             sections=run.course.sections.found(run.course.cycle),

@@ -7,7 +7,7 @@ from contextlib import suppress
 from functools import partial
 from pathlib import PurePath
 
-from ....core.errors import SourceError
+from ....core.errors import EntryError, SourceError
 from ....core.program.entry_point import ALL, EntryPoint, listed
 from ....core.program.program import Program
 from ....core.source.text.damage import nothing_driven
@@ -64,7 +64,7 @@ def run_program(
         name,
         notes=run.notes(),
         questions=run.course.questions(),
-        entries=() if run.out.move_index else points(),
+        entries=() if run.out.move_index else points(begun=name),
         calls=tuple(run.out.calls),
         cycle=run.course.cycle,
         sections=run.course.sections.found(run.course.cycle),
@@ -88,13 +88,16 @@ def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
     return define.name
 
 
-def _points(run: Interpreter, blocks: Sequence[Block]) -> tuple[EntryPoint, ...]:
-    """The functions that the files define."""
+def _points(
+    run: Interpreter, blocks: Sequence[Block], begun: str | None = None
+) -> tuple[EntryPoint, ...]:
+    """The functions that the files define; ``begun`` is the name of the one that was run."""
     return tuple(
         EntryPoint(
             d.name,
             tuple(p.name for p in d.parameters if p.default is None),
             run.analysis.move_count(d.body),
+            d.name == begun,
         )
         for block in blocks
         for d in block
@@ -126,13 +129,13 @@ def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
     span = run.texts.span(*defines[0].head)
     known = listed(_points(run, [tuple(defines)]))
     if not first:
-        raise SourceError(
+        raise EntryError(
             "the file defines functions and calls none of them, and all take arguments or are "
             "called by others: choose as the entry one of "
             f"{known}, with arguments as pick(1, p_home); all drives each of them",
             span,
         )
-    raise SourceError(
+    raise EntryError(
         "the file defines several functions and calls none of them: choose as the entry one of "
         f"{known}; all drives each of them",
         span,
