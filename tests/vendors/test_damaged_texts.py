@@ -304,3 +304,31 @@ def test_no_default_is_taken_for_what_is_damaged() -> None:
     made = read("abb", HOME["abb"], *lines, text=text)
     assert [bool(move.open) for move in made.moves] == [False, True, False, False]
     assert [bool(move.unsettled) for move in made.moves] == [False, False, True, False]
+
+
+_LINE = {
+    "kuka": "LIN {X 1300,Y 0,Z 900,A 0,B 90,C 0}",
+    "ur": "movel(p[-0.45,0.1,0.3,2.2214,2.2214,0])",
+}
+_SETTINGS = {
+    "$VEL.CP=0.2": "$VEL.CP = ",
+    "BAS(#VEL_CP,0.2)": "BAS(#VEL_CP,",
+    "BAS(#TOOL,1)": "BAS(#TOOL",
+    "BAS(#BASE,1)": "BAS(#BASE 1)",
+    "$TOOL=TOOL_DATA[2]": "$TOOL=TOOL_DATA[",
+    "LDAT_ACT={VEL 0.2,ACC 50}\nBAS(#CP_DAT)": "LDAT_ACT={VEL 0.2,ACC\nBAS(#CP_DAT)",
+    "slow(0.2)": "slow(0.2",
+    "set_tcp(p[0,0,0.1,0,0,0])": "set_tcp(p[0,0,]",
+    "set_payload(2)": "set_payload()) 2",
+}
+_SLOW = "DEF demo( )\nBAS(#INITMOV,0)\n{}\nEND\nDEF slow(v:IN)\nREAL v\n$VEL.CP=v\nEND\n"
+
+
+@pytest.mark.parametrize("whole", _SETTINGS)
+def test_moves_behind_a_damaged_setting_are_faults_until_it_is_set_again(whole) -> None:
+    """A speed, a tool or a payload from before would give a time that nobody can vouch for."""
+    language = "ur" if whole.startswith("set_") else "kuka"
+    line, text = _LINE[language], _SLOW if whole.startswith("slow") else "{}"
+    made = read(language, HOME[language], line, _SETTINGS[whole], line, whole, line, text=text)
+    assert [bool(move.open) for move in made.moves] == [False, False, True, False]
+    assert "mend that line" in str(made.moves[2].open)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from ...errors import Note, ParseError, SourceError
 
-STEPPED_OVER = "it is stepped over, and a speed, tool or frame that it would set stays as it was"
+STEPPED_OVER = "it is stepped over, and moves that depend on what it would set are faults"
 """What is done about most damage."""
 MOST = 40
 """Statements of a file that are stepped over; a text with more of them is another language's."""

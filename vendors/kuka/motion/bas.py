@@ -63,8 +63,24 @@ class Basis:
             return
         second = arguments[1] if len(arguments) > 1 else None
         value = None if second is None else self.evaluator.evaluate(second, scope)
-        handler(self, value, call.span)
+        damaged = self._damaged(command, value)
+        if damaged is None:
+            handler(self, value, call.span)
+        else:
+            self.spoil(command, damaged)
         self.changed()
+
+    def _damaged(self, command: str | None, value: Value | None) -> Unknown | None:
+        """What a damaged line would have set, and a command makes settings of."""
+        names = _DATA_OF.get(command or "", ())
+        made_of = [value, *(self.config.value(name) for name in names)]
+        found = [find_unknown(part) for part in made_of if part is not None]
+        return next((one for one in found if one is not None and one.damaged), None)
+
+    def spoil(self, command: str | None, unknown: Unknown) -> None:
+        """What a command sets is not known; of a command that is not known, all that any sets."""
+        for name in _SETS.get(command or "", _ALL):
+            self.set(name, unknown)
 
     def _command(self, first: Expression, scope: Scope) -> str | None:
         if isinstance(first, Constant):
@@ -333,6 +349,36 @@ _COMMANDS: dict[str, Command] = {
     # Motion does not depend on them.
     **dict.fromkeys(("out_sync", "out_async", "group", "ex_bas"), lambda basis, value, span: None),
 }
+
+
+_JOINT, _PATH = ("$vel_axis", "$acc_axis"), ("$vel", "$acc")
+_FRAMES = ("$ipo_mode", "$tool", "$base", "$load")
+_CIRCLE = ("$ori_type", "$circ_type")
+_ALL = (*_JOINT, *_PATH, "$apo", *_FRAMES, *_CIRCLE)
+_SETS: dict[str, tuple[str, ...]] = {
+    "vel_ptp": ("$vel_axis",),
+    "acc_ptp": ("$acc_axis",),
+    "vel_cp": ("$vel",),
+    "acc_cp": ("$acc",),
+    "ptp_dat": (*_JOINT, "$apo"),
+    "ptp_params": (*_JOINT, "$apo", *_FRAMES),
+    "cp_dat": (*_PATH, "$apo", *_CIRCLE),
+    "cp_params": (*_PATH, "$apo", *_CIRCLE, *_FRAMES),
+    "frames": _FRAMES,
+    "tool": ("$tool", "$load"),
+    "base": ("$base",),
+    **dict.fromkeys(("out_sync", "out_async", "group", "ex_bas"), ()),
+}
+"""The system variables that a command sets; the others set all of them."""
+COMMANDS = frozenset(_COMMANDS)
+_DATA_OF = {
+    **dict.fromkeys(("ptp_dat",), ("PDAT_ACT",)),
+    **dict.fromkeys(("cp_dat",), ("LDAT_ACT",)),
+    "ptp_params": ("PDAT_ACT", "FDAT_ACT"),
+    "cp_params": ("LDAT_ACT", "FDAT_ACT"),
+    "frames": ("FDAT_ACT",),
+}
+"""The data that a command reads beside its value."""
 
 
 def plain(value: Value) -> Value:

@@ -20,7 +20,16 @@ from ..values.elements import EXPECTED
 from ..values.frames import null_frame, number_or_zero, pose_of
 from ..values.scope import Variable
 from ..values.types import FRAME_FIELDS
-from ..values.values import Choice, Pending, Placement, Struct, find_unknown, supposed
+from ..values.values import (
+    Choice,
+    Pending,
+    Placement,
+    Struct,
+    Unknown,
+    find_unknown,
+    left_open,
+    supposed,
+)
 
 Note = Callable[[str, str, Span], None]
 
@@ -91,6 +100,8 @@ class Placements:
         unknown = None if value is None else find_unknown(value)
         if unknown is not None:
             assert value is not None and not isinstance(value, Pending)
+            if unknown.damaged:
+                raise left_open(name.upper(), unknown, span)
             value = supposed(value)
             taken = isinstance(value, Struct) and find_unknown(value) is None
             self._note(
@@ -122,6 +133,8 @@ class Placements:
 
     def _load(self, span: Span) -> Load | None:
         value = self._system["$load"].value
+        if isinstance(value, Unknown) and value.damaged:
+            raise left_open("$LOAD", value, span)
         if not isinstance(value, Struct) or find_unknown(value) is not None:
             self._note("$LOAD", "$LOAD is not known: no load is assumed", span)
             return None

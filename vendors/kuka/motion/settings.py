@@ -97,7 +97,13 @@ class Settings:
         return self._number(value, name.upper(), span)
 
     def _open(self, what: str, unknown: Unknown, taken: str, span: Span) -> None:
-        """Say what is taken for a value that is not known."""
+        """Say what is taken for a value that is not known.
+
+        Raises:
+            LeftOpenError: it is one that a damaged line would have set.
+        """
+        if unknown.damaged:
+            raise left_open(what, unknown, span)
         self._note(
             f"{what} {unknown.reason}",
             f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken",

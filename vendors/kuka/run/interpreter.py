@@ -21,7 +21,7 @@ from ....core.source.execution.limits import Meter
 from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import Transcript
 from ....core.source.reading import ReadOptions
-from ..motion.bas import Basis
+from ..motion.bas import COMMANDS, Basis
 from ..motion.frames import Placements
 from ..motion.inline_forms import InlineForms
 from ..motion.kinematics import Kinematics
@@ -74,7 +74,7 @@ from ..values.predefined import MOTION, SILENT, STOPS_WHEN_SET
 from ..values.scope import Scope
 from ..values.types import KrlTypeError, convert
 from ..values.values import Array, Pending, Unknown, Value
-from .analysis import KrlTree
+from .analysis import NATIVE, KrlTree
 from .calls import Calls
 from .exits import Finished, Jump
 from .flow import Flow
@@ -115,7 +115,7 @@ class Interpreter:
         self._settings = Settings(data.system, config.value, notes.once)
         targets = Targets(robot, position, notes.once)
         tables = Tables(robot, notes)
-        basis = Basis(data, evaluator, config, tables, notes, self._system_changed)
+        self._basis = basis = Basis(data, evaluator, config, tables, notes, self._system_changed)
         self._tree = tree = KrlTree(data, evaluator.names, scopes)
         self._analysis = analysis = Analysis(tree)
         writes = OutputWrites(data, evaluator.names, tree, analysis, notes)
@@ -292,13 +292,19 @@ class Interpreter:
         # Nobody knows what it does to what it names.
         step = self._tree.unread(statement, scope.module)
         target = statement.target
+        would = f"damaged line {statement.span.line} would have set"
         if isinstance(target, Name):
-            reason = f"the value of {target.text}, damaged in line {statement.span.line}"
-            unknown = Unknown(reason, statement.span)
+            unknown = Unknown(f"{target.text}, which {would}", statement.span, damaged=True)
             with suppress(SourceError):  # a constant stays one
                 self._evaluator.assign(target, unknown, scope, statement.span)
-            if target.name in MOTION:
-                self._system_changed()
+        lost = Unknown(f"what {would}", statement.span, damaged=True)
+        if not NATIVE.isdisjoint(statement.words):
+            command = next(iter(sorted(statement.words & COMMANDS)), None)
+            self._basis.spoil(command, lost)
+        for body in step.calls:
+            for name in self._analysis.written(body) & MOTION:
+                self._data.system[name].value = lost
+        self._system_changed()
         if not step.moves and not any(map(self._analysis.moves, step.calls)):
             self._transcript.keep(statement.span, "", "")
         elif self._transcript.leaves_open(statement.error, statement.span):

@@ -111,6 +111,8 @@ def _with_unknown(symbol: str, left: Value, right: Value) -> Value:
             return True
     unknown = left if isinstance(left, Unknown) else right
     assert isinstance(unknown, Unknown)
+    if isinstance(right, Unknown) and right.damaged:
+        unknown = right
     return replace(unknown, here=None, held=_held(symbol, left, right))
 
 

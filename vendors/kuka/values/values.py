@@ -172,6 +172,7 @@ class Unknown:
         held: what motion takes it for: the value before others wrote it, or what was computed
             with zero in its place; None if there is no such value.
         key: under which the user may answer it.
+        damaged: a line that is no statement would have set it: motion takes it for nothing.
     """
 
     reason: str
@@ -179,6 +180,7 @@ class Unknown:
     here: tuple[int, Placement | None] | None = None
     held: Value | None = None
     key: str = ""
+    damaged: bool = False
 
     @property
     def answerable(self) -> str:
@@ -229,6 +231,8 @@ def find_unknown(value: Value | Pending) -> Unknown | None:
 
 def left_open(what: str, unknown: Unknown, span: Span) -> LeftOpenError:
     """The error that something depends on a value that is not known."""
+    if unknown.damaged:
+        return LeftOpenError(f"{what} depends on {unknown.reason}: mend that line", span)
     where = f" (read at line {unknown.span.line})" if unknown.span.line != span.line else ""
     return LeftOpenError(
         f"{what} depends on {unknown.reason}{where}, which the text does not say: name the file "
@@ -239,7 +243,7 @@ def left_open(what: str, unknown: Unknown, span: Span) -> LeftOpenError:
 
 def supposed(value: Value) -> Value:
     """The value that motion takes one for that is not known, as far as there is one."""
-    while isinstance(value, Unknown) and value.held is not None:
+    while isinstance(value, Unknown) and value.held is not None and not value.damaged:
         value = value.held
     if isinstance(value, Struct) and any(isinstance(v, Unknown) for v in value.fields.values()):
         fields = {name: supposed(part) for name, part in value.fields.items()}

@@ -166,6 +166,8 @@ class _MoveReader:
         settings = self.run.settings
         if settings.unknown is not None:
             self._taken("the TCP of the move", settings.unknown, "the one before")
+        if settings.load_lost is not None:
+            raise self._refusal("the payload of the move", settings.load_lost, self.span)
         if not settings.stated:
             self.run.out.notes.once(
                 "tcp",
@@ -267,6 +269,13 @@ class _MoveReader:
         return taken
 
     def _taken(self, what: str, unknown: Unknown, taken: str) -> None:
+        """Say what a move takes something for that is not known.
+
+        Raises:
+            LeftOpenError: it is something that a damaged line would have set.
+        """
+        if unknown.damaged:
+            raise self._refusal(what, unknown, self.span)
         self.run.out.notes.count(
             f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken; "
             f"answer it in a file ({spelt('answers')}), [values]; `flyby ask` lists its name",
@@ -274,6 +283,8 @@ class _MoveReader:
         )
 
     def _refusal(self, what: str, unknown: Unknown, span: Span) -> LeftOpenError:
+        if unknown.damaged:
+            return LeftOpenError(f"{what} depends on {unknown.reason}: mend that line", span)
         return LeftOpenError(
             f"{what} depends on {unknown.reason}: answer it in a file ({spelt('answers')}), "
             "[values], where `flyby ask` lists its name, or take the move out",

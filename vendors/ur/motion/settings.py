@@ -46,6 +46,7 @@ class Settings:
         inertia: its inertia about the centre, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m².
         stated: whether the program has set the TCP.
         unknown: what the TCP depends on, if that is not known.
+        load_lost: the damaged line that would have set the payload; None if there is none.
     """
 
     tcp: Pose = IDENTITY
@@ -55,6 +56,7 @@ class Settings:
     inertia: tuple[float, ...] = (0.0,) * 6
     stated: bool = False
     unknown: Unknown | None = None
+    load_lost: Unknown | None = None
 
     @cached_property
     def tool(self) -> Tool:
@@ -155,7 +157,8 @@ def _set_tcp(settings: Settings, values: dict[str, Value]) -> Settings:
 def _set_payload(settings: Settings, values: dict[str, Value]) -> Settings:
     """Without a centre of gravity the TCP is it; the payload has no inertia of its own."""
     centre = centre_of(values["cog"]) if "cog" in values else None
-    return replace(settings, mass=mass_of(values["m"]), centre=centre, inertia=(0.0,) * 6)
+    mass, inertia = mass_of(values["m"]), (0.0,) * 6
+    return replace(settings, mass=mass, centre=centre, inertia=inertia, load_lost=None)
 
 
 def _set_target_payload(settings: Settings, values: dict[str, Value]) -> Settings:
@@ -200,6 +203,9 @@ def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
     if unknown is not None and call.name == "set_tcp":
         run.settings = replace(run.settings, stated=True, unknown=unknown)
         return NOTHING
+    if unknown is not None and unknown.damaged:
+        run.settings = replace(run.settings, load_lost=unknown)
+        return NOTHING
     if unknown is not None:
         run.keep(call, _UNKNOWN_PAYLOAD, call.name)
         return NOTHING
@@ -209,6 +215,15 @@ def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
     except (ValueFault, InputError) as error:
         raise run.texts.error_at(f"{call.name}: {error}", call) from None
     return NOTHING
+
+
+def spoiled(settings: Settings, words: frozenset[str], lost: Unknown) -> Settings:
+    """The settings behind a damaged statement, by the words in it."""
+    if "set_tcp" in words:
+        settings = replace(settings, stated=True, unknown=lost)
+    if not words.isdisjoint(CALLS - {"set_tcp"}):
+        settings = replace(settings, load_lost=lost)
+    return settings
 
 
 CALLS = frozenset(_CALLS)

@@ -25,7 +25,7 @@ from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
 from ..motion.kinematics import joints_of
 from ..motion.position import Position
-from ..motion.settings import Settings
+from ..motion.settings import Settings, spoiled
 from ..syntax.texts import Texts
 from ..syntax.tree import (
     Assign,
@@ -271,9 +271,12 @@ def _keyword(run: Interpreter, statement: Keyword, scope: Scope) -> None:
 def _unread(run: Interpreter, statement: Unread, scope: Scope) -> None:
     span = run.texts.span_of(statement)
     step = run.tree.unread(statement)
+    would = f"damaged line {span.line} would have set"
     if statement.target is not None:
-        reason = f"'{statement.target.text}', damaged in line {span.line}"
-        store(run, statement.target, Located(Unknown(reason, span)), scope)
+        lost = Unknown(f"'{statement.target.text}', which {would}", span, damaged=True)
+        store(run, statement.target, Located(lost), scope)
+    lost = Unknown(f"what {would}", span, damaged=True)
+    run.settings = spoiled(run.settings, statement.words, lost)
     if step.moves or any(map(run.analysis.moves, step.calls)):
         run.stopped_somewhere(SourceError(statement.message, span), span)
     else:

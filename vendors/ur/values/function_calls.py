@@ -34,7 +34,12 @@ def compute(run: Evaluation, call: Call, scope: Scope) -> Value:
     for value in values:
         unknown = find_unknown(value) if not whole else value
         if isinstance(unknown, Unknown):
-            return Unknown(unknown.reason, unknown.span, _held(call.name, computed, values))
+            return Unknown(
+                unknown.reason,
+                unknown.span,
+                _held(call.name, computed, values),
+                unknown.damaged,
+            )
         if isinstance(value, tuple):
             run.work(len(value), span)
     return _applied(run, computed, values, call)

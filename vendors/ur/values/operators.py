@@ -53,7 +53,7 @@ def apply(symbol: str, left: Value, right: Value) -> Value:
     if isinstance(left, Unknown) or isinstance(right, Unknown):
         unknown = left if isinstance(left, Unknown) else right
         assert isinstance(unknown, Unknown)
-        return Unknown(unknown.reason, unknown.span, _held(symbol, left, right))
+        return Unknown(unknown.reason, unknown.span, _held(symbol, left, right), unknown.damaged)
     if symbol in ("==", "!=", "≟"):
         equal = _equal(left, right)
         return equal if isinstance(equal, Unknown) else equal != (symbol == "!=")
@@ -92,7 +92,7 @@ def negate(symbol: str, operand: Value) -> Value:
     if isinstance(operand, Unknown):
         held = supposed(operand)
         held = negate(symbol, held) if is_number(held) and symbol in "+-" else None
-        return Unknown(operand.reason, operand.span, held)
+        return Unknown(operand.reason, operand.span, held, operand.damaged)
     if symbol == "not":
         return not truth(operand)
     if symbol == "~":

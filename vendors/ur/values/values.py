@@ -28,11 +28,13 @@ class Unknown:
         span: where it came into the program.
         held: what a move takes it for: what was computed with zero in its place; None if there is
             no such value.
+        damaged: a line that is no statement would have set it: a move takes it for nothing.
     """
 
     reason: str
     span: Span
     held: Value = None
+    damaged: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +157,7 @@ def find_unknown(value: Value) -> Unknown | None:
 def supposed(value: Value) -> Value:
     """What a move takes a value for that is not known, as far as there is something."""
     if isinstance(value, Unknown):
-        return value if value.held is None else supposed(value.held)
+        return value if value.held is None or value.damaged else supposed(value.held)
     if isinstance(value, UrPose):
         return UrPose(*map(supposed, value))
     return tuple(map(supposed, value)) if isinstance(value, tuple) else value
