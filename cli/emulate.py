@@ -190,6 +190,8 @@ def _write_files(
         from ..core.driving.driven_program import refusal
 
         raise refusal(run.faults)
+    if any(files.by_option().values()):
+        run.refuse_standing()
     made: dict[Path, bytes] = {}
     if files.csv is not None:
         made[files.csv] = run.trajectory.csv()

@@ -41,6 +41,11 @@ MOST_LINES = 10
 def print_report(run: Run) -> None:
     """Print tables on stdout, warnings on stderr."""
     report, program = run.report, run.program
+    if not run.parts:
+        time = f"{report.waiting:.3f} s" if report.waiting else "no time that is known"
+        print_rich(f"{report.program} on {report.robot}: moves nothing; its waits take {time}")
+        print_notes(report, program.questions)
+        return
     print_table(COLUMNS, _rows(report))
     told = f"cycle time {report.driven_time:.3f} s"
     if report.faults:

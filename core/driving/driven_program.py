@@ -11,6 +11,7 @@ from ..display import counted, in_line
 from ..errors import FaultCause, MotionError, Note, Span
 from ..motion.command.trajectory import Trajectory, joined
 from ..motion.emulator.run import Run
+from ..program.move import Wait
 from ..program.program import Program
 
 _NAMED = 10
@@ -91,7 +92,8 @@ class DrivenProgram:
 
     Args:
         program: what was driven.
-        parts: in their order; one of all moves where nothing is at fault.
+        parts: in their order; one of all moves where nothing is at fault, none of a program that
+            moves nothing.
         faults: in the order of moves.
     """
 
@@ -112,8 +114,21 @@ class DrivenProgram:
 
     @property
     def duration(self) -> float:
-        """s, of all parts together."""
+        """s, of all parts together; of a program that moves nothing, of its waits."""
+        if not self.parts:
+            return sum(s.duration for s in self.program.statements if isinstance(s, Wait))
         return sum(part.run.duration for part in self.parts)
+
+    def refuse_standing(self) -> None:
+        """Refuse what only a motion has: a trajectory, a picture.
+
+        Raises:
+            MotionError: the program moves nothing.
+        """
+        if not self.parts:
+            raise MotionError(
+                f"program {self.program.name!r} moves nothing: there is no trajectory"
+            )
 
     @property
     def begins(self) -> tuple[float, ...]:
@@ -123,7 +138,12 @@ class DrivenProgram:
 
     @cached_property
     def trajectory(self) -> Trajectory:
-        """All parts, one after the other; the clock stands still across gaps."""
+        """All parts, one after the other; the clock stands still across gaps.
+
+        Raises:
+            MotionError: the program moves nothing.
+        """
+        self.refuse_standing()
         return joined([part.run.trajectory for part in self.parts], [p.first for p in self.parts])
 
     @cached_property

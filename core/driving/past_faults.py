@@ -38,9 +38,14 @@ def drive(
         start: where the robot stands; None for the program's own start, else its first target.
         period: s between samples; None for the controller's own.
 
+    Returns:
+        What was driven; no part of it of a text that was read and moves nothing by itself.
+
     Raises:
-        MotionError: the program has no move, or goes nowhere at all.
+        MotionError: no move of the program is reached, or it goes nowhere at all.
     """
+    if moves_nothing(program):
+        return DrivenProgram(program, (), ())
     return _Drive(controller, program, period).whole(start)
 
 
@@ -59,6 +64,14 @@ def refuse_faults(
             raise
         faults = drive(controller, program, start).faults
         raise (refusal(faults) if faults else error) from error
+
+
+def moves_nothing(program: Program) -> bool:
+    """Whether a text holds no motion at all, and calls nothing that is not at hand: signals are
+    set, data computed, messages sent."""
+    if program.moves or program.reading is None or any(entry.moves for entry in program.entries):
+        return False
+    return not any(q.kind is QuestionKind.ROUTINE and not q.answered for q in program.questions)
 
 
 class _Drive:

@@ -232,6 +232,8 @@ def make_report(
             number = part.first + i + 1
             moves[number - 1] = replace(row, number=number, begin=row.begin + clock)
         waiting += float(part.run.path.route.dwell.sum())
+    if not driven.parts:
+        waiting = driven.duration
     to_cell = own = None
     if clearances:
         from ...core.collision.clearance import nearest_of
@@ -247,7 +249,7 @@ def make_report(
         waiting=waiting,
         settling=sum(move.settling for move in moves),
         length=sum(move.length for move in moves),
-        top_speed=max(move.top_speed for move in moves),
+        top_speed=max((move.top_speed for move in moves), default=0.0),
         moves=MoveTable(moves),
         parts=tuple((p.first + 1, p.first + len(p.run.program.moves)) for p in driven.parts),
         faults=driven.faults,

@@ -66,8 +66,10 @@ class Run(DrivenProgram):
         """The one run of all moves.
 
         Raises:
-            MotionError: a move cannot be driven, so that there are several, in `parts`.
+            MotionError: a move cannot be driven, so that there are several, in `parts`; or the
+                program moves nothing.
         """
+        self.refuse_standing()
         if self.faults:
             raise MotionError(
                 f"{counted(self.faults, 'move')} cannot be driven, the first is: "
@@ -103,6 +105,8 @@ class Run(DrivenProgram):
     @cached_property
     def causes(self) -> tuple[TimeCause, ...]:
         """What the time is lost to, and what each cause would give back if it fell away."""
+        if not self.parts:
+            return ()
         from ...core.motion.emulator.controller import Controller
         from ...problems.improve.zones.sizes import pattern_for
         from ..setup import setup_of_program
@@ -128,7 +132,11 @@ class Run(DrivenProgram):
 
         Args:
             kind: ``png``, ``pdf`` or ``svg``.
+
+        Raises:
+            MotionError: the program moves nothing.
         """
+        self.refuse_standing()
         from ...drawing.run import draw
 
         return draw(self, self.robot, kind)
@@ -141,6 +149,8 @@ class Run(DrivenProgram):
 
     def _repr_html_(self) -> str:
         """The page of the run in a frame; below it, folded, what shows where no script runs."""
+        if not self.parts:
+            return self._table()
         from ...drawing.page.html import page_frame
         from ..pages.of_results import page_bytes
 

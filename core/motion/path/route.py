@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
-from ...program.entry_point import listed, others_drive
 from ...program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
@@ -40,6 +39,7 @@ from ..geometry.tcp_curves import make_tcp_curves
 from ..model.blend import PARABOLA
 from ..model.rules import ArcTurn, LineTurn
 from .configurations import ConfigurationFinder, Label, located
+from .no_move import no_move
 from .path import Route
 from .programmed_speeds import programmed
 from .route_checks import check_near, half_turns, is_arc
@@ -139,7 +139,7 @@ class RouteFinder:
         """
         moves = program.moves
         if not moves:
-            raise _no_move(program)
+            raise no_move(program)
         before: Move | None = None
         for i, move in enumerate(moves):
             if move.open or move.unsettled:
@@ -484,19 +484,3 @@ def _steps(segments: Segments, which: range) -> tuple[Samples, IntArray]:
     own = np.arange(behind[-1]) - np.repeat(behind - counts, counts)
     sigma = owner + own / np.repeat(steps, counts)
     return Samples(sigma, owner, owner, owner), behind - 1
-
-
-def _no_move(program: Program) -> MotionError:
-    reading = program.reading
-    entries = program.entries
-    offer = "choose as the entry the routine that drives"
-    if others_drive(entries):
-        offer += f": {listed(entries)}"
-    elif any(entry.moves for entry in entries):
-        offer = "none of those in it is come to; `flyby ask` lists what its course depends on"
-    elif entries:
-        offer = "no routine in it moves the robot"
-    return MotionError(
-        f"program {program.name!r} has no move: {offer}",
-        span=None if reading is None else Span(reading.main, 1, 1, 0, 0),
-    )

@@ -7,6 +7,7 @@ from contextlib import suppress
 from functools import partial
 from pathlib import PurePath
 
+from ....core.door import spelt
 from ....core.errors import EntryError, SourceError
 from ....core.program.entry_point import ALL, EntryPoint, listed
 from ....core.program.program import Program
@@ -127,6 +128,12 @@ def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
     if len(driving) == 1:
         return driving[0]
     span = run.texts.span(*defines[0].head)
+    if not any(run.analysis.moves(d.body) for d in defines):
+        raise SourceError(
+            "the file defines functions that move nothing, and calls none of them: it is a library "
+            f"of others; read the program that calls them, and name it as well ({spelt('others')})",
+            span,
+        )
     known = listed(_points(run, [tuple(defines)]))
     if not first:
         raise EntryError(

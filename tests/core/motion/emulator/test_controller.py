@@ -201,7 +201,7 @@ def test_left_out_waypoints_are_named_if_nothing_else_moves() -> None:
 
 
 def test_an_empty_program_is_refused(abb) -> None:
-    with pytest.raises(MotionError, match=r"^program 'main' has no move: choose as the entry"):
+    with pytest.raises(MotionError, match=r"^program .main. has no move: nothing in it moves"):
         abb.controller().run(Program((), start=abb.start))
 
 

@@ -1,0 +1,80 @@
+"""Programs that move nothing are driven to their end; of others it is said why no move is reached."""
+
+from __future__ import annotations
+
+import pytest
+from typer.testing import CliRunner
+
+import flyby
+from flyby.cli.main import app
+from flyby.core.errors import MotionError
+
+KRL = "DEF main( )\n{}\nEND\n"
+TEXTS = {
+    "ur/ur5e": ("main.script", "set_tcp(p[0,0,0.1,0,0,0])\nset_digital_out(1, True)\nsleep(1.5)\n"),
+    "kuka/kr30-3": ("main.src", KRL.format("INT I\nI=3\nPULSE($OUT[2],TRUE,0.2)\nWAIT SEC 1.5")),
+    "abb/irb1200-5-090": (
+        "main.mod",
+        "MODULE m\nPROC main()\nSetDO do1,1;\nWaitTime 1.5;\nENDPROC\nENDMODULE\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("robot", TEXTS)
+def test_a_program_that_moves_nothing_takes_the_time_of_its_waits(robot, tmp_path) -> None:
+    name, text = TEXTS[robot]
+    path = tmp_path / name
+    path.write_text(text, "utf-8")
+    run = flyby.emulate(flyby.read(path, robot=robot), robot=robot)
+    assert run.duration == pytest.approx(1.5)
+    assert run.report.cycle_time == run.report.waiting == pytest.approx(1.5)
+    assert not run.parts
+    assert not run.causes
+    with pytest.raises(MotionError, match="moves nothing: there is no trajectory"):
+        _ = run.trajectory
+    with pytest.raises(MotionError, match="moves nothing"):
+        run.picture()
+    done = CliRunner().invoke(app, ["emulate", str(path), "--robot", robot])
+    assert done.exit_code == 0
+    assert "moves nothing; its waits take 1.500 s" in " ".join(done.output.split())
+    assert (
+        CliRunner().invoke(app, ["emulate", str(path), "--robot", robot, "--json"]).exit_code == 0
+    )
+    assert CliRunner().invoke(app, ["check", str(path), "--robot", robot]).exit_code == 0
+    refused = CliRunner().invoke(
+        app, ["emulate", str(path), "--robot", robot, "--csv", str(tmp_path / "a.csv")]
+    )
+    assert refused.exit_code == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("Station1( )\nStation2( )", "Station1 and Station2 are not at hand: put the files beside"),
+        ("IF way( )>0 THEN\nRETURN\nENDIF\nIF $IN[1] THEN\nHALT\nENDIF", "nothing in it moves"),
+    ],
+)
+def test_why_a_program_has_no_move(text, why, tmp_path) -> None:
+    path = tmp_path / "main.src"
+    path.write_text(KRL.format(text), "utf-8")
+    program = flyby.read(path, robot="kuka/kr30-3")
+    if why.startswith("nothing"):
+        assert not flyby.emulate(program, robot="kuka/kr30-3").parts
+        return
+    with pytest.raises(MotionError, match=why):
+        flyby.emulate(program, robot="kuka/kr30-3")
+
+
+def test_what_decides_that_no_move_is_reached_is_named(tmp_path) -> None:
+    path = tmp_path / "main.script"
+    path.write_text(
+        'def main():\n  go = False\n  c = socket_read_line()\n  if c == "a":\n    go = True\n  end\n'
+        "  if go:\n    movej([0,-1,1,-1,-1,0])\n    movej([0,-1,1,-1,-1,1])\n  end\nend\nmain()\n",
+        "utf-8",
+    )
+    with pytest.raises(MotionError, match=r"reaches no move: nobody says which way .* line 4: "):
+        flyby.emulate(flyby.read(path, robot="ur/ur5e"), robot="ur/ur5e")
+    answers = tmp_path / "answers.toml"
+    answers.write_text('[branches]\n"main.script:4" = 1\n', "utf-8")
+    read = flyby.read(path, robot="ur/ur5e", answers=answers)
+    assert flyby.emulate(read, robot="ur/ur5e").duration > 0
