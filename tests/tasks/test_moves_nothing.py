@@ -1,4 +1,4 @@
-"""Programs that move nothing are driven to their end; of others it is said why no move is reached."""
+"""Programs that move nothing are driven to their end; of others it is said why none is reached."""
 
 from __future__ import annotations
 
@@ -65,13 +65,24 @@ def test_why_a_program_has_no_move(text, why, tmp_path) -> None:
         flyby.emulate(program, robot="kuka/kr30-3")
 
 
+_DECIDED = """def main():
+  go = False
+  c = socket_read_line()
+  if c == "a":
+    go = True
+  end
+  if go:
+    movej([0,-1,1,-1,-1,0])
+    movej([0,-1,1,-1,-1,1])
+  end
+end
+main()
+"""
+
+
 def test_what_decides_that_no_move_is_reached_is_named(tmp_path) -> None:
     path = tmp_path / "main.script"
-    path.write_text(
-        'def main():\n  go = False\n  c = socket_read_line()\n  if c == "a":\n    go = True\n  end\n'
-        "  if go:\n    movej([0,-1,1,-1,-1,0])\n    movej([0,-1,1,-1,-1,1])\n  end\nend\nmain()\n",
-        "utf-8",
-    )
+    path.write_text(_DECIDED, "utf-8")
     with pytest.raises(MotionError, match=r"reaches no move: nobody says which way .* line 4: "):
         flyby.emulate(flyby.read(path, robot="ur/ur5e"), robot="ur/ur5e")
     answers = tmp_path / "answers.toml"
