@@ -38,7 +38,7 @@ class Rapid:
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""
         from ...core.source.write.options import chosen
-        from .motion.targets import axis_kinds
+        from .motion.external_axes import axis_kinds
         from .write.options import RapidOptions
         from .write.writer import SUFFIX, module_name, write
 
@@ -50,7 +50,7 @@ class Rapid:
         """See `flyby.core.language.Patcher.patch`."""
         from ...core.source.patch.edits import reading_of
         from ...core.source.write.options import PatcherOptions
-        from .motion.targets import axis_kinds
+        from .motion.external_axes import axis_kinds
         from .patch.patcher import patch
 
         # The files are read again as they were read, be it without a robot.
@@ -59,7 +59,7 @@ class Rapid:
 
     def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
         """See `flyby.core.language.Recorder.record`."""
-        from .motion.targets import axis_kinds
+        from .motion.external_axes import axis_kinds
         from .record import record
         from .write.options import RapidOptions
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...display import counted
+from ...door import spelt
 from ...errors import FaultCause, InputError, MotionError, Note
 from ...program.move import Move
 from ...program.target import Configuration, JointTarget, PoseTarget
@@ -256,7 +257,9 @@ class ConfigurationFinder:
             raise located(
                 move,
                 index,
-                f"configuration {wanted} contradicts the pose; the robot reaches it with {known}",
+                f"configuration {wanted} contradicts the pose; the robot reaches it with {known}; "
+                "programme one of them, or have the nearest driven "
+                f"({spelt('configuration')} nearest)",
                 FaultCause.CONFIGURATION,
             )
         elif alike:
@@ -310,7 +313,8 @@ class ConfigurationFinder:
                 move,
                 index,
                 f"configuration {wanted} contradicts the path: the arm arrives with {label}; "
-                "use a joint move, or programme the configuration it arrives with",
+                "use a joint move, or programme the configuration it arrives with, or have it "
+                f"given up ({spelt('configuration')} nearest)",
                 FaultCause.CONFIGURATION,
             )
 

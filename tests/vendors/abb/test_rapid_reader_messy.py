@@ -13,6 +13,9 @@ from flyby.core.errors import FlybyError, SourceError, Span
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import Ownership
 from flyby.core.program.program import Program
+from flyby.core.program.question import QuestionKind
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.execution.limits import ExecutionLimits
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.run.reader import read
@@ -291,3 +294,62 @@ def test_numbers_arrive_in_si_units(position, speed, zone):
     assert read_move.target.pose.position == pytest.approx([v / 1000 for v in position])
     assert read_move.speed.tcp == pytest.approx(speed / 1000)
     assert read_move.zone.tcp == pytest.approx(zone / 1000)
+
+
+def test_points_that_were_taught_on_a_standing_track_are_one_place_of_it():
+    place = "[[600,0,900],[0,0,1,0],[0,0,0,0],[%s,9E9,9E9,9E9,9E9,9E9]]"
+    lines = [f"MoveJ {place % e},v100,fine,tool0;" for e in ("2643.66", "2643.67", "2643.8")]
+    text = "MODULE m\nPROC main()\n" + "\n".join(lines) + "\nENDPROC\nENDMODULE\n"
+    robot = find_robot("abb/irb6640-180-255")
+    made = find_vendor("abb").read(text, "m.mod", robot=robot, answers=Answers(goes_on=True))
+    assert [bool(move.open) for move in made.moves] == [False, False, True]
+    assert "moved from 2643.66 to 2643.8" in made.moves[2].open
+    (note,) = (n.message for n in made.notes if "is sent to 2643.66" in n.message)
+    assert "[external_axis.eax_a]" in note
+
+
+def test_external_axes_alone_need_some():
+    text = (
+        "MODULE m\nPERS jointtarget j:=[[0,0,0,0,0,0],[10,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\n"
+        "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;\n"
+        "MoveExtJ j,vrot10,fine;\nENDPROC\nENDMODULE\n"
+    )
+    robot = find_robot("abb/irb6640-180-255")
+    made = find_vendor("abb").read(text, "m.mod", robot=robot, answers=Answers(goes_on=True))
+    assert "MoveExtJ moves external axes alone, and the robot has no external axes" in (
+        made.moves[1].open
+    )
+
+
+@pytest.mark.parametrize(
+    ("instruction", "kept", "lost"),
+    [
+        ('ReadCfgData path,"upper",n;', ("path", '"rob1_1"'), "n"),
+        ('TPReadFK n,path,"a",stEmpty,stEmpty,stEmpty,stEmpty;', ("path", '"rob1_1"'), "n"),
+        ("SocketReceive dev\\Str:=path\\Time:=k;", ("k", "3"), "path"),
+        ("UIMsgBox path\\Result:=n;", ("path", '"rob1_1"'), "n"),
+    ],
+)
+def test_what_an_instruction_is_only_told_stays_known(instruction, kept, lost):
+    name, value = kept
+    text = (
+        'MODULE m\nVAR string path:="rob1_1";\nVAR num n:=1;\nVAR num k:=3;\nVAR socketdev dev;\n'
+        f"PROC main()\n{instruction}\nIF {name}={value} THEN\n"
+        "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;\nENDIF\nENDPROC\n"
+        "ENDMODULE\n"
+    )
+    made = find_vendor("abb").read(text, "m.mod")
+    assert len(made.moves) == 1
+    assert [q.key for q in made.questions if q.kind is not QuestionKind.PAUSE] == [lost]
+
+
+def test_states_of_sockets_are_no_signals():
+    text = (
+        "MODULE m\nVAR socketdev s;\nPROC main()\nIF SOCKET_CLOSED=5 AND SOCKET_CREATED=1 AND "
+        'SOCKET_CONNECTED=2 AND SOCKET_LISTENING=4 AND stEmpty="" THEN\n'
+        "MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;\nENDIF\nENDPROC\n"
+        "ENDMODULE\n"
+    )
+    made = find_vendor("abb").read(text, "m.mod")
+    assert len(made.moves) == 1
+    assert not made.questions

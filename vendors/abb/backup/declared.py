@@ -16,7 +16,8 @@ from ....core.errors import InputError
 from ....core.program.target import JointTarget
 from ....core.program.tool import Tool, WorkObject
 from ....core.robot.model import Robot
-from ..motion.targets import UNDEFINED_MASS, axis_kinds
+from ..motion.external_axes import axis_kinds
+from ..motion.targets import UNDEFINED_MASS
 from ..syntax import tree
 from ..values.predefined import NAMES
 from ..values.records import LOAD0, PER_METRE, UNUSED_AXIS, Record, tool_value, work_object_value

@@ -135,6 +135,11 @@ class _MoveReader:
         return target, _part_of(expression.span, source)
 
     def joint_target(self, arm_stays: bool) -> tuple[JointTarget, MovePart]:
+        if arm_stays and self.run.convert.external.lacking:
+            raise NotDriven(
+                f"{self.bound.text} moves external axes alone, and "
+                f"{self.run.convert.external.lacking}"
+            )
         expression = self.bound.named("ToJointPos")
         found = self._found(expression, "target", JOINTTARGET)
         name = _datum_name(found, expression)

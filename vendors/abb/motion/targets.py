@@ -7,7 +7,6 @@ import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
-from ....core.door import spelt
 from ....core.errors import InputError, Note, SourceError, Span
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
@@ -21,7 +20,6 @@ from ..syntax.tree import Expression, Name
 from ..values.evaluator import Evaluator
 from ..values.located import Located
 from ..values.records import (
-    AXIS_KINDS,
     LOAD0,
     PER_METRE,
     UNUSED_AXIS,
@@ -48,6 +46,7 @@ from ..values.types import (
     Value,
 )
 from .configuration import AbbConfiguration
+from .external_axes import ExternalAxes, cell_axis
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:
@@ -83,16 +82,12 @@ class Converter:
         external_axes: Sequence[str] | None,
         robot: Robot | None = None,
     ) -> None:
-        for kind in external_axes or ():
-            if kind not in AXIS_KINDS:
-                raise InputError(f"an external axis is 'linear' or 'rotating', not {kind!r}")
         self._settings = settings
         self._notes = notes
-        self._axes = external_axes
         self._robot = robot
-        self._standing: dict[int, float] = {}  # values of axes that the robot has not
         self._quaternions: dict[Span, float] = {}
         self._made: dict[tuple[object, ...], object] = {}
+        self.external = ExternalAxes(settings, notes, external_axes, robot)
 
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about quaternions that had to be scaled to unit length."""
@@ -136,7 +131,7 @@ class Converter:
                 expression.span,
             )
         if not value[1] and not self._carries(value[2]):
-            cell = _cell_axis(value[2], self._robot)
+            cell = cell_axis(value[2], self._robot)
             self._notes.once(
                 f"carrier of {name}",
                 f"work object {name} is moved by {value[2]} (a conveyor?), which the robot has "
@@ -272,7 +267,7 @@ class Converter:
         trans, orient, robconf, extax = value
         rot = self._unit(orient, span)
         configuration = self._configuration(robconf, span) if follow else None
-        external = self._external(extax, span)
+        external = self.external.values(extax, span)
         pose = self._guard(span, lambda: Pose(metres(trans), _quaternion(rot)))
         displacement = self._settings.now.displacement
         if displacement is not None:
@@ -293,7 +288,7 @@ class Converter:
             if abs(degrees) >= UNUSED_AXIS:
                 raise SourceError(f"axis {number + 1} of the arm has no value (9E9)", span)
         joints = arm_values(self._robot, robax)
-        external = self._external(extax, span, offsets)
+        external = self.external.values(extax, span, offsets)
         return self._guard(span, lambda: JointTarget(joints, external, name))
 
     def _configuration(self, robconf: Sequence[float], span: Span) -> AbbConfiguration:
@@ -301,75 +296,6 @@ class Converter:
             raise SourceError(f"a confdata has whole numbers, not {list(robconf)}", span)
         cf1, cf4, cf6, cfx = (int(v) for v in robconf)
         return self._guard(span, lambda: AbbConfiguration(cf1, cf4, cf6, cfx))
-
-    def _external(
-        self, extax: Sequence[float], span: Span, offsets: bool = True
-    ) -> tuple[float, ...]:
-        """External axes in rad and m, in the robot's order, as far as they are programmed."""
-        used = [abs(v) < UNUSED_AXIS for v in extax]
-        shift = self._settings.now.offsets
-        if offsets and shift is not None:
-            pairs = zip(extax, shift, used, strict=True)
-            extax = [v + s if counts and abs(s) < UNUSED_AXIS else v for v, s, counts in pairs]
-        if not any(used):
-            return ()
-        if self._axes is None:
-            return self._external_of_unknown_robot(extax, used, span)
-        count = len(self._axes)
-        for number in range(count, len(extax)):
-            if used[number]:
-                self._stands(number, extax[number], span)
-        last = max((i for i in range(count) if used[i]), default=-1)
-        if not all(used[: last + 1]):
-            raise SourceError(
-                "an external axis without a value (9E9) stands before one that has a value: give "
-                "it a value",
-                span,
-            )
-        kinds = self._axes
-        return tuple(
-            extax[i] / PER_METRE if kinds[i] == "linear" else math.radians(extax[i])
-            for i in range(last + 1)
-        )
-
-    def _stands(self, number: int, value: float, span: Span) -> None:
-        """An axis that the robot has not, which must stay where it is."""
-        axis = f"eax_{'abcdef'[number]}"
-        stands = self._standing.setdefault(number, value)
-        if value != stands:
-            assert self._axes is not None
-            raise SourceError(
-                f"external axis {axis} is moved from {stands:g} to {value:g}, and the robot has "
-                f"{len(self._axes)} external axes{_cell_axis(axis, self._robot)}; if the arm has "
-                f"seven joints (IRB 14000 YuMi, IRB 14050), {axis} is one of them, and arms of "
-                "seven joints are not driven by RAPID programs here",
-                span,
-            )
-        if value != 0:
-            self._notes.once(
-                f"external axis {number}",
-                f"external axis {axis} is sent to {value:g}, and the robot has none of that "
-                "number: it is taken to stand there throughout, and left out",
-                span,
-            )
-
-    def _external_of_unknown_robot(
-        self, extax: Sequence[float], used: Sequence[bool], span: Span
-    ) -> tuple[float, ...]:
-        for number, value in enumerate(extax):
-            if used[number] and value != 0:
-                raise SourceError(
-                    f"external axis eax_{'abcdef'[number]} is sent to {value:g}, and the text does "
-                    "not say whether that is mm or degrees: tell the reader the robot's axes "
-                    "(external_axes=('linear',) or ('rotating',))",
-                    span,
-                )
-        self._notes.once(
-            "external axes",
-            "external axes are sent to 0 everywhere; they are taken as not there (9E9 says so)",
-            span,
-        )
-        return ()
 
     # -------------------------------------------------------------------- helpers
 
@@ -408,26 +334,6 @@ class Converter:
 def _quaternion(orient: Record) -> Quaternion:
     w, x, y, z = orient
     return (w, x, y, z)
-
-
-def _cell_axis(name: str, robot: Robot | None) -> str:
-    """What to write into a cell file for an external axis, to stand at the end of a message."""
-    arm = "vendor/robot" if robot is None else robot.name
-    return (
-        f'; to drive it, give a cell file ({spelt("cell")}): robot = "{arm}", '
-        f'[external_axis.{name}] with role = "table" or "track", kind = "revolute" or '
-        '"prismatic", axis, pose, range, speed and acceleration'
-    )
-
-
-def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
-    """How RAPID counts the robot's external axes, eax_a first; None without a robot to ask."""
-    if robot is None:
-        return None
-    from ....core.robot.joint import JointKind  # late: it takes time
-
-    axes = [axis.joint.kind for axis in robot.external_axes]
-    return tuple("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)
 
 
 _ALIKE = 0.85

@@ -15,7 +15,7 @@ from ..values.data import Globals
 from ..values.outputs import WRITING
 from ..values.scope import NOWHERE, Home
 from .instructions import INTERPRETED, MOVING
-from .kept import KEPT, REFUSED
+from .kept import KEPT, REFUSED, written
 
 _HALTING = frozenset({"stop", "systemstopaction"})
 _ENDING = frozenset({"exit", "raise"})
@@ -166,9 +166,10 @@ class RapidTree:
             return Step(writes=writes, made_of=names, outputs=handed, calls=calls, asks=True)
         filled = name in _STEPPING or (name in KEPT and KEPT[name].writes)
         filled = filled or (name not in INTERPRETED and name not in KEPT)  # by nobody knows what
+        brought = frozenset(_given(written(name, statement.arguments)) if filled else ())
         return Step(
             moves=name in MOVING,
-            writes=handed | given if filled else given,
+            writes=brought | given,
             made_of=names,
             outputs=handed if name in WRITING else NOTHING,
             calls=functions,

@@ -43,7 +43,7 @@ from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .flow import run_for, run_if, run_test, run_while
 from .instructions import INTERPRETED, MOVING, refusal
-from .kept import KEPT, REFUSED
+from .kept import KEPT, REFUSED, written
 from .recovery import Frame, Retry, TryNext, raised, recover
 from .traps import connect, share_written
 
@@ -480,7 +480,7 @@ class Interpreter:
 
     def _fill(self, statement: tree.Invoke, scope: Scope) -> None:
         """Data that a kept instruction writes have the user's answers, or no known value."""
-        for argument in statement.arguments:
+        for argument in written(statement.name, statement.arguments):
             if not isinstance(argument.value, tree.Name):
                 continue
             cell = scope.find(argument.value.name)

@@ -6,9 +6,11 @@ externally guided motion, conveyor tracking, MultiMove, spot and arc welding, pa
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ....core.source.text.lexer import words
+from ..syntax.tree import Argument
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +173,37 @@ KEPT: dict[str, Kept] = {
     **_kept(_BRAKES, "brakecheck cyclicbrakecheck"),
 }
 """name → why and how it is kept."""
+
+
+_OUTPUTS: dict[str, tuple[int | str, ...]] = {
+    **dict.fromkeys(words("tpreadfk tpreadnum tpreaddnum"), (0, "breakflag")),
+    "uimsgbox": ("result", "breakflag"),
+    "readcfgdata": (2,),
+    "socketaccept": (1, "clientaddress"),
+    "socketconnect": (),
+    "socketreceive": ("str", "rawdata", "data", "readnoofbytes", "nooffullmessages"),
+    "readblock": (1,),
+    "readanybin": (1,),
+    "readrawbytes": (1,),
+    "camgetresult": (1,),
+    "unpackrawbytes": (2,),
+}
+"""Where an instruction has data that it writes and others: which of its required arguments, counted
+from 0, and which options it writes."""
+
+
+def written(name: str, arguments: Sequence[Argument]) -> list[Argument]:
+    """The arguments of an instruction that bring data into the program.
+
+    Args:
+        name: of the instruction, lower case.
+    """
+    outputs = _OUTPUTS.get(name)
+    if outputs is None:
+        return [*arguments]
+    required = [a for a in arguments if a.option is None]
+    found = [a for number, a in enumerate(required) if number in outputs]
+    return found + [a for a in arguments if a.option in outputs]
 
 
 def _refused(why: str, names: str) -> dict[str, str]:

@@ -36,7 +36,7 @@ from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions, read_with
 from ....core.source.text.damage import Damage, nothing_driven
 from ....core.source.text.files import SourceFile, SourceText, decode
-from ..motion.targets import axis_kinds
+from ..motion.external_axes import axis_kinds
 from ..syntax.parser import parse
 from ..syntax.tree import Argument, Module
 from ..values.data import Globals

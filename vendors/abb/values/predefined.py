@@ -110,6 +110,11 @@ CONSTANTS: Mapping[str, tuple[Type, Value]] = MappingProxyType(
         **_counted("level_normal level_trap level_service"),
         **_counted("event_none event_poweron event_start event_stop event_qstop event_restart"),
         **_numbers(**NUMBERS),
+        **_counted(
+            "socket_created socket_connected socket_bound socket_listening socket_closed", 1
+        ),
+        **_numbers(wait_max=9999999),
+        "stempty": (STRING, ""),
         "str_digit": (STRING, string.digits),
         "str_lower": (STRING, string.ascii_lowercase),
         "str_upper": (STRING, string.ascii_uppercase),
