@@ -9,9 +9,9 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from ..display import counted, in_line
-from ..errors import FlybyError, Note
+from ..errors import FlybyError, Note, SourceError
 from ..program.question import QuestionKind
-from .execution.answers import Answers
+from .execution.answers import AnswerError, Answers, stands_in
 from .execution.limits import EndlessError, Executed, ExecutionLimits
 from .text.files import SourceFile, stray_return, wide_file
 
@@ -162,6 +162,19 @@ def _to_known_places(
     return program
 
 
+def _name_answers(error: SourceError, files: Files, answers: Answers) -> None:
+    """Say in an error which answers stand in its line: the program may be right, and they not."""
+    span = error.span
+    if span is None or span.file not in files or not answers.values:
+        return
+    lines = files[span.file].text.splitlines()
+    line = lines[span.line - 1] if 0 < span.line <= len(lines) else ""
+    told = [name for name in answers.values if stands_in(name, line)]
+    if told and not isinstance(error, AnswerError):
+        error.message += f" ({', '.join(told)} as answered in {answers.file or 'the answers'})"
+        error.args = (f"{span}: {error.message}",)
+
+
 def _is_driven(program: Program, start: JointTarget | None) -> bool:
     """Whether all moves are known, or they lead somewhere."""
     known = bool(program.moves) and not any(move.open for move in program.moves)
@@ -204,7 +217,10 @@ def _to_an_end(
         try:
             program = read(files, main, options)
             return replace(program, notes=(*notes, *program.notes))
-        except EndlessError as error:
+        except SourceError as error:
+            if not isinstance(error, EndlessError):
+                _name_answers(error, files, options.answers)
+                raise
             answers, place = options.answers, error.loop and f"{error.loop.file}:{error.loop.line}"
             if place is None or answers.at("passes", place) is not None:
                 raise

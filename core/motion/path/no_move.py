@@ -32,6 +32,11 @@ def no_move(program: Program) -> MotionError:
             f"nobody says which way it goes in line {_named(_lines(ways))}: say it in a file "
             f"({spelt('answers')}; `flyby ask` writes one)"
         )
+    told = [q.key for q in program.questions if q.answered and q.table in ("values", "sequences")]
+    if moving and told and not helps:
+        helps.append(
+            f"the answers to {_named(told)} have it so: others may lead to one ({spelt('answers')})"
+        )
     run = {program.name.casefold(), *(_routine(call.text) for call in program.calls)}
     others = [entry for entry in program.entries if entry.name.casefold() not in run]
     if any(entry.moves for entry in others) or (moving and not helps):

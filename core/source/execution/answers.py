@@ -199,6 +199,27 @@ class Course:
         self.turned += turn < len(turns)
         return turns[min(turn, len(turns) - 1)]
 
+    def lasting(self, text: str) -> Answer | None:
+        """The answer to a name or call that stays so; None if there is none, or they come in
+        turn."""
+        name = key(text)
+        if name in self.answers.values:
+            self._asked.add(("values", name))
+        return self.answers.values.get(name)
+
+    def used_as(self, text: str, type_: str, example: Answer) -> None:
+        """What was asked turns out to be of a type, as it is used so.
+
+        Args:
+            text: under which it was asked.
+            type_: what an answer is, in words.
+            example: an answer.
+        """
+        place = "values", key(text)
+        asked = self._questions.get(place)
+        if asked is not None and not asked.type:
+            self._questions[place] = replace(asked, type=type_, example=example)
+
     def withdraw(self, text: str) -> None:
         """What was asked is known after all, and not listed."""
         self._questions.pop(("values", key(text)), None)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.driving.past_faults import drive
+from flyby.core.errors import SourceError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.program import Program
 from flyby.core.program.target import PoseTarget
@@ -106,3 +107,88 @@ def test_closed_folds_of_arcs_and_waits(tmp_path: Path, rest: str) -> None:
     assert len(program.moves) == 3
     speed = program.moves[1].speed.tcp
     assert (speed == pytest.approx(0.3)) is bool(rest)
+
+
+ASKING = """BAS(#INITMOV,0)
+PDAT_ACT=PP7
+FDAT_ACT=FP7
+BAS(#PTP_PARAMS,60)
+PTP XP7
+IF clear AND NOT busy THEN
+WAIT FOR ready
+ENDIF
+IF kind==3 THEN
+HALT
+ENDIF
+FOR I=1 TO 6
+$VEL_AXIS[I]=share
+ENDFOR
+IF colour==#RED THEN
+HALT
+ENDIF
+CIRC XA,XB
+LIN XP7:offs
+SLIN XS WITH $TOOL=STOOL2(FS), $ACC=SACC_CP(LS), $IPO_MODE=SIPO_MODE(FS.IPO_FRAME)
+LIN grid[row,col]
+"""
+
+
+def test_what_is_asked_for_is_typed_as_it_is_used(tmp_path: Path) -> None:
+    """An example has to be usable: a position is no number."""
+    program = read(ASKING, tmp_path)
+    asked = {question.key: question for question in program.questions}
+    types = {
+        "XP7": "position",
+        "FP7": "tool and base",
+        "PP7": "PDAT",
+        "clear": "true or false",
+        "busy": "true or false",
+        "kind": "whole number",
+        "share": "number",
+        "colour": "a constant, as #RED",
+        "XA": "position",
+        "XB": "position",
+        "offs": "position",
+        "FS": "FDAT",
+        "LS": "LDAT",
+        "FS.IPO_FRAME": "#BASE or #TCP",
+        "row": "whole number, from 1",
+    }
+    assert [key for key, part in types.items() if part not in asked[key].type] == []
+    assert [name for name, _ in asked["FP7"].example] == ["TOOL_NO", "BASE_NO", "IPO_FRAME"]
+    assert [name for name, _ in asked["XA"].example] == list("XYZABC")
+
+
+def test_the_examples_of_what_is_asked_are_answers(tmp_path: Path) -> None:
+    from flyby.core.source.execution.answers_text import answers_text
+
+    program = read(ASKING, tmp_path)
+    lines = answers_text(program.questions, "m.src").partition("[branches]")[0].splitlines()
+    told = [line[1:] for line in lines if line.startswith("#") and not line.startswith("# ")]
+    again = read(ASKING, tmp_path, "\n".join(told))
+    assert len(told) > 12
+    assert [bool(move.open) for move in again.moves].count(True) == 1  # an item of grid
+
+
+def test_an_index_that_is_not_known_leaves_the_rest_of_the_program(tmp_path: Path) -> None:
+    body = START + "LIN pts[n]\npos=XP1\npos.Z=pos.Z+lift[n,k].Z\nLIN pos\n" + START
+    program = read(body, tmp_path)
+    assert [bool(move.open) for move in program.moves] == [False, True, True, False]
+    assert "the value of XP1" in str(program.moves[2].open)
+    keys = {question.key for question in program.questions}
+    assert {"n", "XP1"} <= keys
+    assert "pts[4]" in {q.key for q in read(body, tmp_path, "n = 4").questions}
+
+
+def test_parts_of_an_answered_position_are_answered(tmp_path: Path) -> None:
+    body = START + "near=XP1\nnear.Z=XP1.Z+100\nLIN near\n"
+    told = read(body, tmp_path, "XP1 = { X = 900, Y = 0, Z = 700, A = 0, B = 90, C = 0 }")
+    assert not told.moves[1].open
+    target = told.moves[1].target
+    assert isinstance(target, PoseTarget)
+    assert target.pose.position == pytest.approx((0.9, 0.0, 0.8))
+
+
+def test_an_answer_of_another_type_is_named_with_its_file(tmp_path: Path) -> None:
+    with pytest.raises(SourceError, match=r"a BOOL, not 1 \(ready as answered in .*answers\.toml"):
+        read(START + "IF ready THEN\n" + START + "ENDIF\n", tmp_path, "ready = 1")

@@ -330,7 +330,7 @@ ENDSWITCH
     without = src.replace("IF NOT", "IF FALSE AND NOT")
     assert visited(krl(src=without, answers=answers)) == [2]
     with pytest.raises(
-        SourceError, match="an index depends on the value of place, which nothing sets"
+        SourceError, match="whose index depends on the value of place, which nothing sets"
     ):
         krl(src=f"DEF demo(place:IN)\nINT place\n{INIT}LIN P[place]\nEND", data="DECL FRAME P[3]")
     with pytest.raises(SourceError, match="holds functions"):

@@ -101,6 +101,7 @@ class Basis:
             SourceError: it is not known.
         """
         value = supposed(self.config.value(name))
+        self.evaluator.used_as(value, name.partition("_")[0].lower())
         if isinstance(value, Unknown):
             self.notes.once(
                 f"{name} {value.reason}",

@@ -16,7 +16,7 @@ from ....core.program.question import QuestionKind
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ....core.source.execution.answers import About, Course
 from ....core.spatial.pose import IDENTITY, Pose
-from ..values.elements import EXPECTED
+from ..values.expected import EXPECTED
 from ..values.frames import null_frame, number_or_zero, pose_of
 from ..values.scope import Variable
 from ..values.types import FRAME_FIELDS

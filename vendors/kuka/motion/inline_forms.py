@@ -100,6 +100,8 @@ class InlineForms:
 
         def value(call: Call, arguments: list[Value | None], scope: Scope) -> Value:
             given = arguments[0] if arguments else None
+            whole = isinstance(given, Unknown) and "." not in given.key
+            self._basis.evaluator.used_as(given, "fdat" if whole else "int")
             number = given.fields.get(component) if isinstance(given, Struct) else given
             return made(self._basis.index(number, f"the number of a {kind}", call.span), call.span)
 
@@ -117,6 +119,7 @@ class InlineForms:
     def _mode(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``SIPO_MODE(#BASE)``"""
         value = arguments[0] if arguments else None
+        self._basis.evaluator.used_as(value, "ipo_m_t")
         return value if isinstance(value, Choice) else Choice("base")
 
     def _state(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
@@ -139,6 +142,8 @@ class InlineForms:
 
     def _fields(self, call: Call, arguments: list[Value | None]) -> dict[str, Value]:
         value = arguments[0] if arguments else None
+        joint = call.name in ("sacc_joint", "sapo_ptp", "sgear_jerk")
+        self._basis.evaluator.used_as(value, "pdat" if joint else "ldat")
         if isinstance(value, Unknown):
             unknown, value = value, supposed(value)
             if not isinstance(value, Struct):

@@ -8,7 +8,7 @@ sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 
 from ....core.errors import InputError, LeftOpenError, SourceError, Span
@@ -83,6 +83,10 @@ class MotionReader:
                 self._drive(motion, scope)
             except LeftOpenError as error:
                 self.evaluator.reader = ELSEWHERE
+                for target in motion.targets[1:]:  # an arc asks for both of its points at once
+                    with suppress(SourceError):
+                        value = self.evaluator.evaluate(target, scope)
+                        self.evaluator.used_as(value, "e6pos")
                 self.triggers.end()
                 self.transcript.leave_out(motion.span, error)
                 self.position.left_out(motion.span)
@@ -299,6 +303,7 @@ class MotionReader:
         value = self.evaluator.evaluate(expression, scope)
         self.evaluator.reader = ELSEWHERE
         what = f"the target of {motion.word.upper()}"
+        self.evaluator.used_as(value, "target" if "ptp" in motion.word else "e6pos")
         unknown = find_unknown(value)
         if unknown is not None:
             value = self._supposed(value, unknown, what, span)

@@ -14,8 +14,8 @@ from ..motion.bas import Basis
 from ..motion.inline_forms import Function
 from ..syntax.tree import Call, Invoke, Name
 from ..values.data import Data
-from ..values.elements import EXPECTED
 from ..values.evaluator import Evaluator, brought_by
+from ..values.expected import EXPECTED
 from ..values.functions import COMPUTED
 from ..values.scope import Scope
 from ..values.values import Array, Struct, Unknown, Value, supposed

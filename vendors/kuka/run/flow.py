@@ -88,6 +88,8 @@ class Flow:
         """``IF``"""
         value = self._evaluated(statement.condition, scope, statement.span)
         otherwise = statement.otherwise if statement.otherwise.statements else None
+        if isinstance(statement.condition, Name):
+            self._evaluator.used_as(value, "bool")
         if isinstance(value, Unknown):
             self._choose(statement.condition.span, value, [statement.body], otherwise, scope)
         elif _truth(value, statement.condition, "IF"):
@@ -259,6 +261,8 @@ class Flow:
         self, condition: Expression, scope: Scope, span: Span, what: str
     ) -> bool | Undecided:
         value = self._evaluated(condition, scope, span)
+        if isinstance(condition, Name):
+            self._evaluator.used_as(value, "bool")
         if isinstance(value, Unknown):
             return Undecided(value.reason)
         return _truth(value, condition, what)

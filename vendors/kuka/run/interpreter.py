@@ -69,6 +69,7 @@ from ..values.advance_run import AdvanceRun
 from ..values.config_data import ConfigData
 from ..values.data import Data
 from ..values.evaluator import Evaluator
+from ..values.expected import EXPECTED
 from ..values.library import Library
 from ..values.predefined import MOTION, SILENT, STOPS_WHEN_SET
 from ..values.scope import Scope
@@ -320,6 +321,11 @@ class Interpreter:
         except LeftOpenError as error:
             self._assign_somewhere(target, scope, error)
             return
+        whole = cell.type if not target.path else ""
+        number = isinstance(cell.value, Array) or cell.type in ("cp", "apo")
+        kind = "real" if target.path and number and self._data.is_system(target.name) else whole
+        if kind in EXPECTED:
+            self._evaluator.used_as(value, kind)
         if target.name in MOTION:
             self._system_changed()
             return

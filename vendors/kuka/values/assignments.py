@@ -57,8 +57,9 @@ class Assignment:
         if not path:
             self._assign_whole(cell, value, label, span)
             return cell
-        if isinstance(cell.value, Unknown) and cell.type in _WHOLE and isinstance(path[0], str):
-            cell.value = _opened(cell.value, cell.type)
+        kind = cell.type or _kind_with(path[0])
+        if isinstance(cell.value, Unknown) and kind in _WHOLE and isinstance(path[0], str):
+            cell.value = _opened(cell.value, kind)
         elif cell.value is None or isinstance(cell.value, Unknown | Pending):
             cell.value = _empty(path[0], cell.type)
         self._assign_part(cell, path, value, label, target, span)
@@ -157,6 +158,13 @@ class Assignment:
             raise SourceError(f"index {index + 1} of {target.text} is no place in it", target.span)
         padded = text.ljust(index)
         cell.value = padded[:index] + value[:1] + padded[index + 1 :]
+
+
+def _kind_with(step: str | tuple[int, ...]) -> str:
+    """What is declared in no file at hand, by a component that is written of it."""
+    if step in _POSE:
+        return "e6pos"
+    return "e6axis" if step in _ARM else ""
 
 
 def _opened(unknown: Unknown, type_name: str) -> Struct:

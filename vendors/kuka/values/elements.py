@@ -10,13 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from ....core.errors import SourceError, Span
+from ....core.errors import LeftOpenError, SourceError, Span
 from ....core.program.question import Answer, QuestionKind
 from ....core.source.execution.answers import About, Course, Fields
 from ....core.source.execution.suppose import is_open
 from ..syntax.tree import Expression, Name
 from .advance_run import AdvanceRun
 from .data import Data
+from .expected import AXIS_NAMES, EXPECTED
 from .frames import null_frame
 from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
 from .scope import Scope, Variable
@@ -29,6 +30,7 @@ from .values import (
     Unknown,
     Value,
     copied,
+    left_open,
     shown,
     supposed,
     unplaced,
@@ -43,6 +45,18 @@ _WIDEST = 32
 """Bits of a ``SIGNAL``."""
 
 
+class OpenIndexError(LeftOpenError):
+    """Which item of an array is meant is not known.
+
+    Args:
+        unknown: what the index depends on.
+    """
+
+    def __init__(self, unknown: Unknown, span: Span) -> None:
+        super().__init__(left_open("an index", unknown, span).message, span)
+        self.unknown = unknown
+
+
 class Expressions(Protocol):
     """Evaluates expressions in a scope."""
 
@@ -53,17 +67,6 @@ class Expressions(Protocol):
         """A known number; ``use`` says in messages what needs it."""
 
 
-_FRAME = dict.fromkeys("XYZABC", 0.0)
-_AXES = {f"A{k}": 0.0 for k in range(1, 7)}
-EXPECTED: dict[str, tuple[str, Answer]] = {
-    "bool": ("true or false", False),
-    "int": ("whole number", 0.0),
-    "real": ("number", 0.0),
-    "char": ("text", ""),
-    **dict.fromkeys(("frame", "pos", "e6pos"), ("position", Fields(_FRAME.items()))),
-    **dict.fromkeys(("axis", "e6axis"), ("axis values", Fields(_AXES.items()))),
-}
-"""Types of KRL as an answer's, in words and by an example."""
 _TRUTHS = frozenset({"$in", "$out", "$flag", "$cycflag"})
 _NUMBER = r"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?"
 _STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+{_NUMBER})*\s*\}}")
@@ -73,7 +76,8 @@ _STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+
 def _told(axes: Value) -> str:
     """The axis values of the arm, as KRL writes them."""
     fields = axes.fields if isinstance(axes, Struct) else {}
-    return ", ".join(f"{name} {fields[name.lower()]:g}" for name in _AXES if name.lower() in fields)
+    names = [name for name in AXIS_NAMES if name.lower() in fields]
+    return ", ".join(f"{name} {fields[name.lower()]:g}" for name in names)
 
 
 def kind_of(name: str) -> QuestionKind:
@@ -99,11 +103,18 @@ class Names:
     advance: AdvanceRun
 
     def value(self, node: Name, scope: Scope) -> Value:
-        """The value of a datum or of a part of it.
+        """The value of a datum or of a part of it; not known where an index is not.
 
         Raises:
             SourceError: it has no such part.
         """
+        try:
+            return self._value(node, scope)
+        except OpenIndexError as error:
+            reason = f"an item of {node.text}, whose index depends on {error.unknown.reason}"
+            return Unknown(reason, node.span, key=error.unknown.key, damaged=error.unknown.damaged)
+
+    def _value(self, node: Name, scope: Scope) -> Value:
         position = POSITION.get(node.name)
         if node.name in STOPS_WHEN_READ:
             self.advance.stopped = True
@@ -326,11 +337,15 @@ class Names:
             SourceError: it is none.
         """
         value = self.expressions.evaluate(expression, scope)
+        if isinstance(expression, Name) and isinstance(value, Unknown) and value.key:
+            self.course.used_as(value.key, *EXPECTED["index"])
         last = supposed(value) if isinstance(value, Unknown) else None
         if isinstance(value, Unknown) and isinstance(last, int) and self.course.answers.goes_on:
             message = f"an index depends on {value.reason}: {last}, which it was last, is taken"
             self.course.decided(expression.span, message)
             return int(last)
+        if isinstance(value, Unknown):
+            raise OpenIndexError(value, expression.span)
         value = self.expressions.number(expression, scope, "an index")
         if value != int(value):
             raise SourceError(f"an index is a whole number, not {value:g}", expression.span)
@@ -398,6 +413,12 @@ class Names:
         system = self.data.is_system(node.name)
         kind = kind_of(node.name) if system or node.name in OUTPUTS else QuestionKind.DATUM
         truths = system and node.name in _TRUTHS
+        if path and path[-1] in ("x", "y", "z", "a", "b", "c"):
+            self.course.used_as(spelled(node.text, path[:-1]), *EXPECTED["frame"])
+        if path and self.course.lasting(spelled(node.text, path)) is None:
+            part = self._part_of_answer(node, path)
+            if part is not None:
+                return part
         answer = self._answer(node, path, kind, "bool" if truths else "")
         if answer is not None:
             return answer
@@ -405,6 +426,19 @@ class Names:
             why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
         text = spelled(node.text, path)
         return Unknown(f"the value of {text}{why}", node.span, key=text)
+
+    def _part_of_answer(self, node: Name, path: Path) -> Value | None:
+        """A part of what the user answers as a whole; None if it is not in an answer."""
+        for cut in reversed(range(len(path))):
+            answer = self.course.lasting(spelled(node.text, path[:cut]))
+            if answer is None:
+                continue
+            value: Value | None = self.answered(answer)
+            for step in path[cut:]:
+                fields = value.fields if isinstance(value, Struct) else {}
+                value = fields.get(step) if isinstance(step, str) else None
+            return value
+        return None
 
 
 def supposed_part(value: Unknown, step: str | tuple[int, ...]) -> Unknown:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
+from ....core.door import spelt
 from ....core.errors import LeftOpenError, SourceError, Span
 from ....core.program.question import QuestionKind
 from ....core.source.execution.answers import About, Course
@@ -16,6 +17,7 @@ from .advance_run import AdvanceRun
 from .assignments import Assignment
 from .data import Data
 from .elements import Names, Position
+from .expected import EXPECTED
 from .functions import COMPUTED, computed
 from .literals import flat_literal, number_literal, numeral
 from .operators import OperandError, apply, negate
@@ -118,12 +120,19 @@ class Evaluator:
         if unknown is not None:
             raise left_open(use, unknown, span)
 
+    def used_as(self, value: Value | None, type_name: str) -> None:
+        """What nobody has set is used as a value of a type: so it is asked for."""
+        if isinstance(value, Unknown) and value.key:
+            self.course.used_as(value.key, *EXPECTED[type_name])
+
     def number(self, expression: tree.Expression, scope: Scope, use: str) -> float:
         """A known number.
 
         Raises:
             SourceError: it is none.
         """
+        if isinstance(expression, tree.Name):
+            self.used_as(self.names.value(expression, scope), "real")
         value = self.known(expression, scope, use)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise SourceError(f"{use} is a number, not {shown(value)}", expression.span)
@@ -150,14 +159,31 @@ class Evaluator:
         return Struct(node.type or "", made)
 
     def _operation(self, operation: tree.Operation, scope: Scope, _: str | None) -> Value:
-        value = self._operand(operation.first, scope)
+        value, node = self._operand(operation.first, scope), operation.first
         for symbol, operand in operation.rest:
             right = self._operand(operand, scope)
+            self._used(symbol, node, value, right)
+            self._used(symbol, operand, right, value)
+            node = operation
             try:
                 value = apply(symbol, value, right)
             except OperandError as error:
                 raise SourceError(str(error), operation.span) from None
         return value
+
+    def _used(self, symbol: str, node: tree.Expression, value: Value, other: Value) -> None:
+        """What an operator says of the type of a datum that nobody has set."""
+        if not isinstance(node, tree.Name) or not isinstance(value, Unknown):
+            return
+        if symbol in ("and", "or", "exor") or isinstance(other, bool):
+            self.used_as(value, "bool")
+        elif symbol == ":":
+            self.used_as(value, "frame")
+        elif isinstance(other, Choice):
+            shown_as = f"#{other.name.upper()}"
+            self.course.used_as(value.key, f"a constant, as {shown_as}", shown_as)
+        elif isinstance(other, int | float):
+            self.used_as(value, "real" if isinstance(other, float) else "int")
 
     def _operand(self, expression: tree.Expression, scope: Scope) -> Value:
         """A value that is computed with: the literal it came from is read by an expression."""
@@ -178,8 +204,11 @@ class Evaluator:
             self.reads.by_expression(LeafSource(leaf), self.reader)
 
     def _unary(self, node: tree.Unary, scope: Scope, _: str | None) -> Value:
+        operand = self._operand(node.operand, scope)
+        if isinstance(node.operand, tree.Name):
+            self.used_as(operand, "bool" if node.operator == "not" else "real")
         try:
-            return negate(node.operator, self._operand(node.operand, scope))
+            return negate(node.operator, operand)
         except OperandError as error:
             raise SourceError(str(error), node.span) from None
 
@@ -229,7 +258,10 @@ class Evaluator:
     def undeclared(self, node: tree.Name, scope: Scope, kind: str) -> LeftOpenError:
         """The error that a datum is declared nowhere."""
         known = self.data.names(scope)
-        offer = "declare it, or name the .dat that does (the program's own, or $config.dat)"
+        offer = (
+            "declare it, name the .dat that does (the program's own, or $config.dat), or say it in "
+            f"a file ({spelt('answers')}; `flyby ask` writes one)"
+        )
         return LeftOpenError(unknown_name(kind, node.text, known, offer), node.span)
 
 
