@@ -3,14 +3,15 @@
 const OFF = 3e-4; // m
 const SHADE = 0.03; // of a colour's part, 0 to 1
 
-/** Indices from..to−1 of points that are kept; xyz is flat, shades a colour for each point. */
-export function fewer(xyz, shades, from, to) {
+/** Indices from..to−1 of points that are kept; xyz is flat, shades a colour for each point; rough:
+ * how many times as far as usual lines may be off. */
+export function fewer(xyz, shades, from, to, rough = 1) {
   const keep = new Uint8Array(to - from);
   keep[0] = keep[to - from - 1] = 1;
   const stack = [[from, to - 1]];
   while (stack.length) {
     const [a, b] = stack.pop();
-    let worst = 1;
+    let worst = rough;
     let at = -1;
     for (let k = a + 1; k < b; k += 1) {
       const off = missed(xyz, shades, a, b, k);

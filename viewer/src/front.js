@@ -18,15 +18,14 @@ function drawn(session) {
   const [y0, y1] = spread(front.points.map((point) => point.y));
   const x = (value) => left + ((value - x0) / (x1 - x0)) * (width - left - 10);
   const y = (value) => height - bottom - ((value - y0) / (y1 - y0)) * (height - bottom - 10);
-  const ticks = (from, to) => Array.from({ length: 5 }, (_, k) => from + ((k + 0.5) / 5) * (to - from));
   const axes = [
     ...ticks(x0, x1).flatMap((value) => [
       svg("line", { class: "axis", x1: x(value), x2: x(value), y1: 8, y2: height - bottom }),
-      svg("text", { x: x(value), y: height - bottom + 14, "text-anchor": "middle" }, number(value, 2)),
+      svg("text", { x: x(value), y: height - bottom + 14, "text-anchor": "middle" }, ticked(value, ticks(x0, x1))),
     ]),
     ...ticks(y0, y1).flatMap((value) => [
       svg("line", { class: "axis", x1: left, x2: width - 10, y1: y(value), y2: y(value) }),
-      svg("text", { x: left - 5, y: y(value) + 4, "text-anchor": "end" }, number(value, 0)),
+      svg("text", { x: left - 5, y: y(value) + 4, "text-anchor": "end" }, ticked(value, ticks(y0, y1))),
     ]),
     svg("text", { x: (left + width) / 2, y: height - 8, "text-anchor": "middle" }, front.x),
     svg("text", { x: -(height - bottom) / 2, y: 13, "text-anchor": "middle", transform: "rotate(-90)" }, front.y),
@@ -51,4 +50,18 @@ function drawn(session) {
   return h("div", { class: "drawing" },
     svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "front" }, ...axes, svg("path", { class: "step", d: step }), ...dots, ...names),
     h("p", { class: "quiet" }, "pick a point: its program is driven, the given one beside it as a ghost"));
+}
+
+/** Some round numbers in a range. */
+function ticks(from, to) {
+  const rough = (to - from) / 5;
+  const size = 10 ** Math.floor(Math.log10(rough));
+  const step = size * ([1, 2, 5].find((one) => one * size >= rough) ?? 10);
+  const first = Math.ceil(from / step - 1e-9);
+  return Array.from({ length: Math.floor(to / step + 1e-9) - first + 1 }, (_, k) => (first + k) * step);
+}
+
+function ticked(value, all) {
+  const step = all.length > 1 ? all[1] - all[0] : Math.abs(value) || 1;
+  return number(value, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
 }

@@ -36,10 +36,11 @@ export const COLOURINGS = {
 const PROGRAMMED = { light: 0x8a8f94, dark: 0x7d858c };
 const GHOST = { light: "#2f6fb3", dark: "#7db7f0" };
 // Points of a path that is drawn wide, of a longer one that are; zones at once, of more those round
-// the present move: with a graphics card, and without one.
+// the present move; of what pieces they are made, and how rough thin lines are: with a graphics card,
+// and without one.
 const AMOUNTS = [
-  { wide: 3000, near: 900, zones: 40 },
-  { wide: 400, near: 240, zones: 12 },
+  { wide: 3000, near: 900, zones: 40, ball: [20, 14], rough: 1 },
+  { wide: 400, near: 240, zones: 12, ball: [14, 9], rough: 3 },
 ];
 const MANY_FLAGS = 30; // from which on they are drawn smaller
 const FLAGS = { wait: 0xd55e00, device: 0xe69f00, statement: 0x0072b2, event: 0x009e73 };
@@ -128,7 +129,7 @@ export class PathView {
   /** Points and colours of a line. */
   fill(one) {
     const { local } = this.track.path();
-    const kept = fewer(local, this.shades, one.from, one.to);
+    const kept = fewer(local, this.shades, one.from, one.to, one.wide ? 1 : this.amounts.rough);
     const xyz = kept.flatMap((k) => [local[3 * k], local[3 * k + 1], local[3 * k + 2]]);
     const colours = kept.flatMap((k) => this.shades[k]);
     if (one.wide) {
@@ -212,7 +213,7 @@ export class PathView {
     for (const [node, rows] of byNode) {
       const passed = rows.filter((k) => waypoints.radius[k] > 0);
       const material = new MeshBasicMaterial({ color: 0xe69f00, transparent: true, opacity: 0.2, depthWrite: false });
-      const balls = new InstancedMesh(new SphereGeometry(1, 20, 14), material, Math.min(passed.length, this.amounts.zones));
+      const balls = new InstancedMesh(new SphereGeometry(1, ...this.amounts.ball), material, Math.min(passed.length, this.amounts.zones));
       balls.renderOrder = 4;
       balls.frustumCulled = false;
       this.balls.push({ balls, passed });

@@ -36,7 +36,7 @@ const BACKGROUND = { light: 0xf6f7f8, dark: 0x15181b };
 
 /** One arm of one track. */
 class ArmView {
-  constructor(track, { ghost, theme, around }) {
+  constructor(track, { ghost, theme, around, plain }) {
     this.track = track;
     this.ghost = ghost;
     this.group = new Group();
@@ -55,14 +55,14 @@ class ArmView {
       if (still && !around) return;
       if (body.name !== last) number += 1;
       last = body.name;
-      const object = bodyObject(body, { ghost: ghost && !still, theme, number });
+      const object = bodyObject(body, { ghost: ghost && !still, theme, number, plain });
       this.nodes[body.node].add(object);
       if (body.tool) this.tools.push([body.tool, object]);
     });
     this.parts = track.parts.map((part) => {
       const object = bodyObject(
         { ...track.arm.bodies[part.shape], name: part.name },
-        { ghost, theme, number: 0 },
+        { ghost, theme, number: 0, plain },
       );
       this.group.add(object);
       return { ...part, object };
@@ -143,7 +143,7 @@ export class SceneView {
     this.arms = shown.map((track) => {
       const first = !around.has(track.arm);
       around.add(track.arm);
-      return new ArmView(track, { ghost: session.isGhost(track), theme, around: first });
+      return new ArmView(track, { ghost: session.isGhost(track), theme, around: first, plain: this.plain });
     });
     for (const arm of this.arms) this.root.add(arm.group);
     this.paths = shown.map((track) => new PathView(this, track, this.arms[shown.indexOf(track)]));
@@ -192,7 +192,7 @@ export class SceneView {
     const box = this.bounds();
     const size = Math.ceil(Math.max(box.max.x - box.min.x, box.max.y - box.min.y, 1) * 1.6);
     const [major, minor] = this.theme === "dark" ? [0x3a4046, 0x272b30] : [0xc9cdd1, 0xe2e4e7];
-    const grid = new GridHelper(2 * size, 4 * size, major, minor);
+    const grid = new GridHelper(2 * size, (this.plain ? 2 : 4) * size, major, minor);
     grid.rotateX(Math.PI / 2);
     grid.position.set(Math.round((box.min.x + box.max.x) / 2), Math.round((box.min.y + box.max.y) / 2), Math.min(0, box.min.z) - 0.002);
     this.root.add(grid);

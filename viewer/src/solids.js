@@ -15,12 +15,14 @@ import {
   MeshLambertMaterial,
   SphereGeometry,
 } from "three";
+import { coarse } from "./coarse.js";
 import { columnMajor } from "./kinematics.js";
 
+const MOST_IN_SOFTWARE = 2500; // triangles of a mesh that is drawn without a graphics card
 const EDGE_ANGLE = 30; // degrees between triangles from which on their edge is drawn
 
-export function geometryOf(shape) {
-  if (shape.vertices) return meshOf(shape);
+export function geometryOf(shape, plain) {
+  if (shape.vertices) return meshOf(plain ? coarse(shape, MOST_IN_SOFTWARE) : shape);
   const [a, b, c] = shape.size;
   switch (shape.kind) {
     case "box":
@@ -28,9 +30,9 @@ export function geometryOf(shape) {
     case "sphere":
       return new SphereGeometry(a, 24, 16);
     case "cylinder":
-      return new CylinderGeometry(a, a, b, 32).rotateX(Math.PI / 2);
+      return new CylinderGeometry(a, a, b, plain ? 20 : 32).rotateX(Math.PI / 2);
     default:
-      return new CapsuleGeometry(a, b, 8, 24).rotateX(Math.PI / 2);
+      return new CapsuleGeometry(a, b, plain ? 5 : 8, plain ? 16 : 24).rotateX(Math.PI / 2);
   }
 }
 
@@ -71,9 +73,9 @@ function material(role, ghost, theme, number) {
   });
 }
 
-/** A body as an object with its place in the frame of its node. */
-export function bodyObject(body, { ghost, theme, number }) {
-  const geometry = geometryOf(body.shape);
+/** A body as an object with its place in the frame of its node; plain: drawn in software. */
+export function bodyObject(body, { ghost, theme, number, plain }) {
+  const geometry = geometryOf(body.shape, plain);
   const group = new Group();
   const mesh = new Mesh(geometry, material(body.role, ghost, theme, number));
   mesh.userData.body = body;
@@ -83,7 +85,7 @@ export function bodyObject(body, { ghost, theme, number }) {
   if (!ghost && body.role === "obstacle") {
     const colour = LOOKS[theme].edge;
     const lines = new LineSegments(
-      new EdgesGeometry(geometry, EDGE_ANGLE),
+      new EdgesGeometry(plain ? geometryOf(body.shape) : geometry, EDGE_ANGLE),
       new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.8 }),
     );
     group.add(lines);
