@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .collocation import Control, Values, straight
-from .jets import cos, exp, sin, sqrt
+from .expressions import cos, exp, sin, sqrt
 from .stated import StatedTrajectory, stated
 
 FREE = float("nan")

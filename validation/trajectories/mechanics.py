@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .collocation import Collocation, Control, Values, straight
-from .jets import cos, sin, tan
+from .expressions import cos, sin, tan
 from .stated import StatedTrajectory, stated
 
 INF = float("inf")

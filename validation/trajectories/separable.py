@@ -5,8 +5,8 @@ A formula takes its variables one by one and gives a value, or rows of values:
     def moved(x0, v0, x1, v1):
         return [x1 - x0 - 0.1 * (v0 + v1) / 2]
 
-With arrays in the place of numbers it is worked out at all places at once, with jets in their place
-it gives all derivatives, and with a computer algebra's symbols its expressions.
+It is called once, with expressions in the place of numbers; they and their derivatives are then
+worked out at all places at once. With a computer algebra's symbols it gives that one's.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ from scipy import sparse
 from ...core.arrays import FloatArray, IntArray
 from ...core.sqp import NLP
 from ...core.sqp.algebra.entries import MatrixEntries
-from .jets import Jet
+from .expressions import Expression, Graph, slopes
+from .tape import Tape
 
 Formula = Callable[..., Any]
 
@@ -44,39 +45,65 @@ class Terms:
 
 
 class _Group:
-    """Terms with the places of their derivatives."""
+    """Terms, recorded once, with the places of their values and derivatives.
+
+    Attributes:
+        slope_places, bend_places: rows and columns of the derivatives' entries.
+    """
 
     def __init__(self, terms: Terms, first_row: int) -> None:
-        self.formula, self.places = terms.formula, np.atleast_2d(terms.places)
-        self.count, self.width = self.places.shape
-        self.height = max(1, len(terms.lower))
+        places = np.atleast_2d(terms.places)
+        self.count, width = places.shape
+        self._from = np.ascontiguousarray(places.T)
+        height = max(1, len(terms.lower))
         # rows: all of the first row of the formula, then all of the second
-        self.rows = first_row + np.arange(self.height * self.count).reshape(self.height, -1)
-        self._flat = np.zeros((self.width, self.width, 1))
-        self._units = np.eye(self.width)[:, :, None]
+        self.rows = first_row + np.arange(height * self.count).reshape(height, -1)
+        graph = Graph(width + height)
+        x, weights = graph.variables[:width], graph.variables[width:]
+        found = _rows(terms.formula(*x))
+        rows = [row if isinstance(row, Expression) else graph.constant(row) for row in found]
+        self._values = Tape(graph, rows)
+        entries = [(r, j, slope) for r in range(height) for j, slope in _present(rows[r], x)]
+        self._slopes = Tape(graph, [slope for *_, slope in entries])
+        self.slope_places = self._laid_out(
+            [self.rows[r] for r, *_ in entries], [self._from[j] for _, j, _ in entries]
+        )
+        total = graph.constant(0.0)
+        for weight, row in zip(weights, rows, strict=True):
+            total = total + weight * row
+        bends = [
+            (i, j, bend)
+            for i, slope in _present(total, x)
+            for j, bend in _present(slope, x[: i + 1])
+        ]
+        self._bends = Tape(graph, [bend for *_, bend in bends])
+        self._off = [k for k, (i, j, _) in enumerate(bends) if i != j]
+        below = [(self._from[i], self._from[j]) for i, j, _ in bends]
+        above = [below[k][::-1] for k in self._off]
+        self.bend_places = self._laid_out(*([p[side] for p in below + above] for side in (0, 1)))
+
+    def _laid_out(self, rows: list[IntArray], columns: list[IntArray]) -> tuple[IntArray, IntArray]:
+        none = [np.zeros(0, dtype=np.int64)]
+        return np.concatenate(none + rows), np.concatenate(none + columns)
 
     def values(self, x: FloatArray) -> FloatArray:
         """(height, count)."""
-        found = _rows(self.formula(*x[self.places].T))
-        return np.array([np.broadcast_to(np.asarray(row, float), self.count) for row in found])
+        return self._values.values(x[self._from])
 
-    def jets(self, x: FloatArray) -> list[Jet]:
-        wide = (self.width, self.width, self.count)
-        ones = np.ones(self.count)
-        given = [
-            Jet(x[self.places[:, j]], self._units[j] * ones, self._flat) for j in range(self.width)
-        ]
-        found = []
-        for row in _rows(self.formula(*given)):
-            jet = row if isinstance(row, Jet) else Jet(row * ones, self._units[0] * 0, self._flat)
-            found.append(
-                Jet(
-                    jet.value,
-                    np.broadcast_to(jet.gradient, wide[1:]),
-                    np.broadcast_to(jet.hessian, wide),
-                )
-            )
-        return found
+    def slopes(self, x: FloatArray) -> FloatArray:
+        """First derivatives, flat, as `slope_places` has them."""
+        return self._slopes.values(x[self._from]).ravel()
+
+    def bends(self, x: FloatArray, weights: FloatArray) -> FloatArray:
+        """Second derivatives of the weighted (height, count) sum, flat, as `bend_places` has
+        them."""
+        below = self._bends.values(np.concatenate([x[self._from], weights]))
+        return np.concatenate([below, below[self._off]]).ravel()
+
+
+def _present(of: Expression, by: list[Expression]) -> list[tuple[int, Expression]]:
+    """The derivatives that are not zero everywhere, with the numbers of their variables."""
+    return [(k, slope) for k, slope in enumerate(slopes(of, by)) if slope.number != 0.0]
 
 
 class Separable:
@@ -109,21 +136,10 @@ class Separable:
         for terms in rows:
             self._groups.append(_Group(terms, self.m))
             self.m += self._groups[-1].rows.size
-        self._at = b""
-        J_places = [
-            (np.repeat(group.rows[r], group.width), group.places.ravel())
-            for group in self._groups
-            for r in range(group.height)
-        ]
-        self._J = _entries(J_places, (self.m, n))
-        H_places = [
-            (
-                np.repeat(group.places, group.width, axis=1).ravel(),
-                np.tile(group.places, (1, group.width)).ravel(),
-            )
-            for group in (*self._costs, *self._groups)
-        ]
-        self._H = _entries(H_places, (n, n))
+        self._J = _entries([group.slope_places for group in self._groups], (self.m, n))
+        self._g = np.concatenate([group.slope_places[1] for group in self._costs])
+        both = (*self._costs, *self._groups)
+        self._H = _entries([group.bend_places for group in both], (n, n))
 
     def nlp(self) -> NLP:
         """The problem for the solver."""
@@ -151,31 +167,16 @@ class Separable:
         return np.concatenate([group.values(x).ravel() for group in self._groups])
 
     def gradient(self, x: FloatArray) -> FloatArray:
-        self._differentiate(x)
-        found = np.zeros(self.n)
-        for group, (jet,) in zip(self._costs, self._cost_jets, strict=True):
-            np.add.at(found, group.places, jet.gradient.T)
-        return found
+        values = np.concatenate([group.slopes(x) for group in self._costs])
+        return np.bincount(self._g, values, minlength=self.n)
 
     def jacobian(self, x: FloatArray) -> sparse.csc_array:
-        self._differentiate(x)
-        values = [jet.gradient.T.ravel() for jets in self._row_jets for jet in jets]
-        return self._J.matrix(np.concatenate(values))
+        return self._J.matrix(np.concatenate([group.slopes(x) for group in self._groups]))
 
     def hessian(self, x: FloatArray, factor: float, multipliers: FloatArray) -> sparse.csc_array:
-        self._differentiate(x)
-        values = [factor * jet.hessian for (jet,) in self._cost_jets]
-        for group, jets in zip(self._groups, self._row_jets, strict=True):
-            weights = multipliers[group.rows]
-            values.append(sum(w * jet.hessian for w, jet in zip(weights, jets, strict=True)))
-        return self._H.matrix(np.concatenate([v.transpose(2, 0, 1).ravel() for v in values]))
-
-    def _differentiate(self, x: FloatArray) -> None:
-        """Jets at x, of which those of the last one are kept."""
-        if x.tobytes() != self._at:
-            self._cost_jets = [group.jets(x) for group in self._costs]
-            self._row_jets = [group.jets(x) for group in self._groups]
-            self._at = x.tobytes()
+        values = [group.bends(x, np.full((1, group.count), factor)) for group in self._costs]
+        values += [group.bends(x, multipliers[group.rows]) for group in self._groups]
+        return self._H.matrix(np.concatenate(values))
 
 
 def _rows(found: Any) -> list[Any]:

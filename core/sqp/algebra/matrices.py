@@ -120,12 +120,10 @@ def identity(n: int) -> Sparsity:
 
 @njit(cache=True, error_model="numpy")
 def _same(mine: IntArray, other: IntArray) -> bool:
-    if len(mine) != len(other):
-        return False
-    for k in range(len(mine)):
-        if mine[k] != other[k]:
-            return False
-    return True
+    same, count = len(mine) == len(other), 0
+    while same and count < len(mine):
+        same, count = mine[count] == other[count], count + 1
+    return same
 
 
 @njit(cache=True, error_model="numpy")

@@ -27,6 +27,9 @@ from .newton import Newton, Place, SingularError
 _RELAXED = 1e-8
 _TINY = 1e-13
 _GENTLE, _LEAST_FIRST, _LARGEST_FIRST = 0.1, 1e-6, 1e-2
+_JAM, _JAMS = 1e-2, 10
+"""Share of a step below which limits leave no way to feasibility, and after how many of them in a
+row there is none: the limits were come too near to, and restoration finds another way."""
 _LARGEST_FACTOR, _SMALL_FACTOR = 1e4, 1e-4
 
 
@@ -139,7 +142,7 @@ class InteriorPoint:
         Raises:
             CallableError: the Hessian has no value.
         """
-        length, kind, tiny = 0.0, "", 0
+        length, kind, tiny, jams = 0.0, "", 0, 0
         while True:
             if self._seen(self, length, kind):
                 return InteriorEnding.STOPPED
@@ -155,8 +158,10 @@ class InteriorPoint:
             length, kind = taken.length, taken.kind
             size = largest_change(taken.step.v, self.place.at.v)
             self._advance(taken)
+            jammed = length < _JAM and self.place.errors.primal > self.tolerance
+            jams = jams + 1 if jammed else 0
             tiny = tiny + 1 if size * length < _TINY else 0
-            if tiny and not self.barrier.lower() and tiny > 1:
+            if jams == _JAMS or (tiny and not self.barrier.lower() and tiny > 1):
                 return InteriorEnding.STUCK
 
     def _small(self, errors: Errors) -> bool:

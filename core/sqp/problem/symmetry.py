@@ -63,7 +63,8 @@ class Symmetry:
 @njit(cache=True, error_model="numpy")
 def _mirrored(data: FloatArray, places: IntArray, found: BoolArray) -> bool:
     """Whether each entry equals its counterpart, or zero where there is none."""
-    for k in range(len(data)):
-        if data[k] != (data[places[k]] if found[k] else 0.0):
-            return False
-    return True
+    same, count = True, 0
+    while same and count < len(data):
+        same = data[count] == (data[places[count]] if found[count] else 0.0)
+        count += 1
+    return same

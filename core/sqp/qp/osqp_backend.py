@@ -11,6 +11,9 @@ from ..algebra.matrices import SparseMatrix, Sparsity
 from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _INFINITY = 1e30
+_LEAST_ITERATIONS, _WORK = 2000, 4_000_000
+"""Iterations, and their number times rows and variables, after which a subproblem is not worth
+more: those of large problems cost as much as an iteration of another method."""
 _STATUS = {
     "solved": QpStatus.SOLVED,
     "solved inaccurate": QpStatus.INEXACT,
@@ -25,7 +28,7 @@ class OsqpBackend:
 
     Args:
         accuracy: absolute and relative tolerance of its residuals.
-        iterations: at most, per subproblem.
+        iterations: at most, per subproblem; fewer for large ones.
     """
 
     name = "osqp"
@@ -86,7 +89,7 @@ class OsqpBackend:
             eps_rel=self._accuracy,
             eps_prim_inf=1e-8,
             eps_dual_inf=1e-8,
-            max_iter=self._iterations,
+            max_iter=max(_LEAST_ITERATIONS, min(self._iterations, _WORK // len(lower))),
             polishing=False,
             check_termination=10,
             warm_starting=True,

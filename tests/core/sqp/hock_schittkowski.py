@@ -11,8 +11,7 @@ from math import inf, pi
 from math import log as ln
 from math import sqrt as root
 
-from flyby.validation.trajectories.jets import cos, exp, log, sin
-
+from .jets import cos, exp, log, sin
 from .problem import at_least, equal, problem
 
 

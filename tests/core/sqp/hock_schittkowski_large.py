@@ -7,8 +7,6 @@ from math import cos as cosine
 from math import sin as sine
 from math import sqrt as root
 
-from flyby.validation.trajectories.jets import cos, exp, log, sin
-
 from .hock_schittkowski_medium import (
     COLVILLE_A,
     COLVILLE_B,
@@ -17,6 +15,7 @@ from .hock_schittkowski_medium import (
     COLVILLE_E,
     dot,
 )
+from .jets import cos, exp, log, sin
 from .problem import at_least, between, equal, problem
 
 

@@ -7,8 +7,7 @@ from math import sqrt as root
 
 import numpy as np
 
-from flyby.validation.trajectories.jets import erf, exp, log, sin, sqrt
-
+from .jets import erf, exp, log, sin, sqrt
 from .problem import at_least, between, equal, problem
 
 AGES = [8] * 2 + [10] * 4 + [12] * 4 + [14] * 3 + [16] * 3 + [18] * 2 + [20] * 3 + [22] * 3

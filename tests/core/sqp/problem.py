@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP
-from flyby.validation.trajectories.jets import Jet, variables
+
+from .jets import Jet, variables
 
 
 class Row(NamedTuple):

@@ -10,9 +10,9 @@ from flyby.core.sqp import NLP, HessianKind
 from flyby.core.sqp.problem.differences import Differences
 from flyby.core.sqp.problem.patterns import Pattern
 from flyby.core.sqp.problem.scaled import ScaledProblem
-from flyby.validation.trajectories.jets import log
 
 from .honesty import solved
+from .jets import log
 from .problem import nlp_from
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from flyby.core.sqp import NLP, Result, Status, scattered_starts, solve, solve_from
 from flyby.validation.textbook import DoubleIntegrator
-from flyby.validation.trajectories.jets import cos, log
 
 from .honesty import assert_honest
+from .jets import cos, log
 from .problem import at_least, at_most, nlp_from
 
 

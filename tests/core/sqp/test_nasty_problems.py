@@ -8,9 +8,9 @@ from scipy import sparse
 
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, HessianKind, NlpError, Status
-from flyby.validation.trajectories.jets import exp, log, sqrt
 
 from .honesty import solved
+from .jets import exp, log, sqrt
 from .problem import at_least, at_most, between, equal, nlp_from
 
 BACKENDS = pytest.mark.parametrize("qp", [BackendKind.CLARABEL, BackendKind.OSQP])

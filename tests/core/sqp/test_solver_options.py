@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, BackendKind, HessianKind, Iteration, NlpError, Status, solve
 from flyby.validation.textbook import DoubleIntegrator
-from flyby.validation.trajectories.jets import exp, sin
 
 from .honesty import solved
+from .jets import exp, sin
 from .known_points import known_point
 from .problem import at_least, at_most, equal, nlp_from
 

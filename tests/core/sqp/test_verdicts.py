@@ -13,9 +13,9 @@ from flyby.core.arrays import FloatArray
 from flyby.core.sqp import NLP, Iteration, Status, solve
 from flyby.core.sqp.problem.optimality import OptimalityResiduals
 from flyby.core.sqp.verdict import Ending, Evidence, verdict
-from flyby.validation.trajectories.jets import cos, sin
 
 from .honesty import assert_honest, solved
+from .jets import cos, sin
 from .problem import at_least, at_most, equal, nlp_from
 
 NAN = float("nan")

@@ -1,4 +1,4 @@
-"""Numbers with first and second derivatives: how stated problems are differentiated.
+"""Numbers with first and second derivatives: how the test problems are differentiated.
 
 A jet carries a value, its gradient (n,) and its Hessian (n, n) with respect to n variables, or k of
 each at once: (k,), (n, k), (n, n, k). Arithmetic and the functions below follow the chain rule. The
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy import special
 
-from ...core.arrays import FloatArray
+from flyby.core.arrays import FloatArray
 
 
 class Jet:
