@@ -28,16 +28,21 @@ ADD = "add"
 def vendors(
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """List vendors, what each can read and write, and the plugin that it comes with."""
+    """List vendors, what each can read and write, and the plugin that it comes with; below, what
+    else plugins add: robots, readers of logs, exporters, rules of flyby check."""
     found = [registry().vendors[name] for name in sorted(registry().vendors)]
     if json:
-        print_json([_vendor_json(vendor) for vendor in found])
+        print_json([*map(_vendor_json, found), *_others()])
         return
     columns = (
         *(("vendor", "left"), ("robots", "right"), ("reads", "left"), ("languages", "left")),
         ("from", "left"),
     )
     print_table(columns, list(map(_vendor_row, found)))
+    if others := _others():
+        keys = ("adds", "name", "distribution", "what")
+        heads = [(key.replace("distribution", "from"), "left") for key in keys]
+        print_table(heads, [tuple(one[key] for key in keys) for one in others])
     if broken := registry().broken:
         print_table(
             (("plugin, not loaded", "left"), ("from", "left"), ("because", "left")),
@@ -134,6 +139,23 @@ def _parts(vendor: Vendor) -> list[str]:
     parts = {"reader": "read", "writer": "write", "patcher": "patch", "recorder": "record"}
     parts |= {"speaks": "translate into", "backups": "import", "machine_data": "machine data"}
     return [verb for part, verb in parts.items() if getattr(vendor, part) is not None]
+
+
+def _others() -> list[dict[str, str]]:
+    """What plugins add beside vendors."""
+    offers, told = registry().offers, registry().distributions
+    rules = {**offers.program_rules, **offers.run_rules}
+    found = [("robot", name, "") for name in offers.robots]
+    found += [("reads logs", one.name, one.summary) for one in offers.logs.values()]
+    found += [
+        ("exports", one.name, f"{' '.join(one.suffixes)}: {one.summary}")
+        for one in offers.exporters.values()
+    ]
+    found += [("rule", one.id, one.summary) for one in rules.values()]
+    return [
+        {"adds": adds, "name": name, "distribution": told.get(name, ""), "what": what}
+        for adds, name, what in found
+    ]
 
 
 def _vendor_row(vendor: Vendor) -> tuple[str, ...]:

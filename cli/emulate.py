@@ -13,6 +13,7 @@ from ..core.errors import EntryError, FlybyError, InputError, OptionError
 from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with
+from ..tasks.catalogue import registry
 from ..tasks.emulate import EmulateOptions, emulate_with
 from ..tasks.files.outputs import (
     check_folder,
@@ -40,6 +41,7 @@ class _Files:
     plot: Path | None
     report: Path | None
     write: Path | None
+    export: Path | None
 
     def by_option(self) -> dict[str, Path | None]:
         """The paths by the options that named them."""
@@ -64,6 +66,13 @@ def emulate(
             "beside which further ones are put if the language takes several, or a folder."
         ),
     ] = None,
+    export: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write the motion for other software, by the plugin whose files end so "
+            "(flyby vendors lists them)."
+        ),
+    ] = None,
     opaque: Annotated[
         OpaqueStyle | None,
         typer.Option(
@@ -78,7 +87,9 @@ def emulate(
 
     Moves that cannot be driven are faults; the robot goes on behind them, and the exit status is 1.
     """
-    files = _Files(csv, npz, plot, report, write)
+    files = _Files(csv, npz, plot, report, write, export)
+    if export is not None:
+        registry().exporter_of(export)
     if opaque is not None and write is None:
         raise OptionError(f"--opaque {opaque} is of the program that --write writes: name its file")
     if plot is not None:
@@ -201,6 +212,8 @@ def _write_files(
         sources = _sources(files.write, run, opaque)
         check_outputs({"--write": sources}, inputs, replace_existing)
         made |= sources
+    if files.export is not None:
+        made[files.export] = run.exported(files.export)
     if files.plot is not None:
         made[files.plot] = run.picture(picture_kind(files.plot, "--plot"))
     if files.report is not None:

@@ -14,42 +14,22 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NoReturn
 
-import pluggy
-
 from . import hookspec
 from .door import called
 from .errors import InputError, UnknownNameError
+from .plugins.loading import BrokenPlugin, Offers, distribution, offers_of, order, with_version
 from .robot.arm_list import Listed
 from .robot.model_names import described, matching, meant, near
 from .vendor import Vendor
 
 if TYPE_CHECKING:
+    from .plugins.parts import Exporter
     from .robot.model import Robot
 
-OWN_DISTRIBUTION = "flyby"
 _OFFERED = 12
 """Robots that a message offers at most."""
 _NEAR = 6
 """Of them those whose names are only like what was written."""
-
-
-@dataclass(frozen=True, slots=True)
-class BrokenPlugin:
-    """A plugin that could not be taken in.
-
-    Args:
-        plugin: name of its entry point.
-        distribution: the installed distribution that it belongs to.
-        error: what it raised.
-    """
-
-    plugin: str
-    distribution: str
-    error: BaseException
-
-    def __str__(self) -> str:
-        kind = type(self.error).__name__
-        return f"plugin {self.plugin!r} of {self.distribution} is broken: {kind}: {self.error}"
 
 
 class UnlistedRobotError(UnknownNameError):
@@ -75,27 +55,6 @@ class UnlistedRobotError(UnknownNameError):
         self.args = (f"unknown robot {name!r}: {told}",)
 
 
-class _Register:
-    """The register of one plugin: vendors count once the plugin has finished without error."""
-
-    def __init__(self, taken: Iterable[str]) -> None:
-        self._taken = set(taken)
-        self.vendors: dict[str, Vendor] = {}
-
-    def add(self, vendor: Vendor, api: int = hookspec.API) -> None:
-        """See `hookspec.VendorRegister.add`."""
-        if api != hookspec.API:
-            raise InputError(
-                f"it was built for version {api} of flyby's plugin interface, and this flyby has "
-                f"{hookspec.API}: install a newer {'plugin' if api < hookspec.API else 'flyby'}"
-            )
-        if not isinstance(vendor, Vendor):
-            raise InputError(f"register.add takes a Vendor, not {vendor!r}")
-        if vendor.name in self._taken or vendor.name in self.vendors:
-            raise InputError(f"a vendor called {vendor.name!r} is registered already")
-        self.vendors[vendor.name] = vendor
-
-
 @dataclass(frozen=True)
 class Registry:
     """The vendors at hand.
@@ -103,30 +62,41 @@ class Registry:
     Args:
         vendors: by name.
         broken: plugins that could not be taken in.
-        distributions: what each vendor was installed with, its version included, by its name.
+        distributions: what each vendor, robot, form of logs, exporter and rule of a plugin was
+            installed with, its version included, by its name.
+        offers: what plugins have handed over, beside vendors: robots, readers of logs, exporters,
+            rules of ``flyby check``.
     """
 
     vendors: Mapping[str, Vendor]
     broken: tuple[BrokenPlugin, ...] = ()
     distributions: Mapping[str, str] = field(default_factory=dict)
+    offers: Offers = field(default_factory=Offers)
 
     @classmethod
     def discover(cls, entry_points: Iterable[metadata.EntryPoint] | None = None) -> Registry:
         """Load every plugin of ``entry_points``, by default all that are installed."""
         if entry_points is None:
             entry_points = metadata.entry_points(group=hookspec.GROUP)
-        vendors: dict[str, Vendor] = {}
+        known = Offers()
         distributions: dict[str, str] = {}
         broken: list[BrokenPlugin] = []
-        for entry_point in sorted(entry_points, key=_order):
+        for entry_point in sorted(entry_points, key=order):
             try:
-                found = _vendors_of(entry_point.load(), entry_point.name, vendors)
-                vendors |= found
-                distributions |= dict.fromkeys(found, _with_version(entry_point))
+                found = offers_of(entry_point.load(), entry_point.name, known)
             except (Exception, SystemExit) as error:
-                plugin = BrokenPlugin(entry_point.name, _distribution(entry_point), error)
+                plugin = BrokenPlugin(entry_point.name, distribution(entry_point), error)
                 broken.append(plugin)
-        return cls(MappingProxyType(vendors), tuple(broken), MappingProxyType(distributions))
+                continue
+            known.add(found)
+            for parts in found.parts().values():
+                distributions |= dict.fromkeys(parts, with_version(entry_point))
+        vendors = dict(known.vendors)
+        for name, load in known.robots.items():
+            vendor, _, robot = name.partition("/")
+            own = vendors[vendor]
+            vendors[vendor] = replace(own, robots={**own.robots, robot: load})
+        return cls(MappingProxyType(vendors), tuple(broken), MappingProxyType(distributions), known)
 
     def find_vendor(self, name: str) -> Vendor:
         """The vendor ``name``.
@@ -226,6 +196,24 @@ class Registry:
                 raise InputError(f"{path}: {vendor.companions[suffix]}")
         raise InputError(f"{path}: no vendor reads {suffix!r} files; known: {known or 'none'}")
 
+    def exporter_of(self, path: str | Path) -> Exporter:
+        """The exporter whose files end as this one.
+
+        Raises:
+            InputError: there is none.
+        """
+        suffix = Path(path).suffix.lower()
+        for exporter in self.offers.exporters.values():
+            if suffix in exporter.suffixes:
+                return exporter
+        known = ", ".join(
+            f"{' '.join(one.suffixes)} ({one.name})" for one in self.offers.exporters.values()
+        )
+        raise InputError(
+            f"{path}: no exporter writes {suffix!r} files; installed: {known or 'none'} "
+            f"({called('vendors')} lists plugins)"
+        )
+
     def _unknown(self, kind: str, name: str, vendor: str, known: Iterable[str]) -> NoReturn:
         error = UnknownNameError(kind, name, known)
         error.args = ("; ".join((str(error), *self._broken(vendor))),)
@@ -266,39 +254,3 @@ def find_vendor(name: str) -> Vendor:
 def find_robot(name: str) -> Robot:
     """`Registry.find_robot` among all that is installed."""
     return installed().find_robot(name)
-
-
-def _vendors_of(plugin: object, name: str, taken: Iterable[str]) -> dict[str, Vendor]:
-    """The vendors of one plugin; its manager dies with this call.
-
-    Raises:
-        pluggy.PluginValidationError: a hook of the plugin has no specification, or another
-            signature.
-        InputError: the plugin implements no hook, or registers no sound vendor.
-    """
-    manager = pluggy.PluginManager(hookspec.GROUP)
-    manager.add_hookspecs(hookspec)
-    manager.register(plugin, name)
-    manager.check_pending()
-    if not manager.get_hookcallers(plugin):
-        raise InputError("it implements no flyby_register_vendors; is @hookimpl missing?")
-    register = _Register(taken)
-    manager.hook.flyby_register_vendors(register=register)
-    if not register.vendors:
-        raise InputError("its flyby_register_vendors adds no vendor")
-    return register.vendors
-
-
-def _order(entry_point: metadata.EntryPoint) -> tuple[bool, str, str]:
-    """The project's own first, so that no stranger takes a shipped name by its spelling."""
-    owner = _distribution(entry_point)
-    return owner != OWN_DISTRIBUTION, owner, entry_point.name
-
-
-def _distribution(entry_point: metadata.EntryPoint) -> str:
-    return entry_point.dist.name if entry_point.dist is not None else "an unnamed distribution"
-
-
-def _with_version(entry_point: metadata.EntryPoint) -> str:
-    version = getattr(entry_point.dist, "version", None)
-    return f"{_distribution(entry_point)}{f' {version}' if version else ''}"

@@ -34,7 +34,9 @@ def check_with(program: Program, options: CheckOptions) -> Findings:
         InputError: nobody says which robot, or a statement both takes a part of the cell and lets
             go of it.
     """
+    from ..core.lint.check import OtherRules
     from ..core.lint.check import check as look
+    from .catalogue import registry
     from .results.findings import Findings
 
     program, setup = with_setup(program, options)
@@ -44,7 +46,9 @@ def check_with(program: Program, options: CheckOptions) -> Findings:
         return [*_part_findings(course), *clearance_findings(course, setup, parts)]
 
     start = start_of(program)
-    return Findings(look(course.program, setup.vendor, setup.robot, start, around))
+    offers = registry().offers
+    others = OtherRules(tuple(offers.program_rules.values()), tuple(offers.run_rules.values()))
+    return Findings(look(course.program, setup.vendor, setup.robot, start, around, others))
 
 
 check = by_keywords(check_with, CheckOptions)

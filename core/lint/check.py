@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ..door import spelt
 from ..driving.driven_program import DrivenPart
@@ -23,8 +23,19 @@ CANNOT_READ = "cannot-read"
 COLLISION, CLEARANCE, NEAREST, PART = "collision", "clearance", "nearest", "part"
 
 
+@dataclass(frozen=True, slots=True)
+class OtherRules:
+    """Rules that plugins add to flyby's own."""
+
+    of_program: tuple[Rule[ProgramSubject], ...] = ()
+    of_run: tuple[Rule[RunSubject], ...] = ()
+
+
+_NONE = OtherRules()
+
+
 def rules() -> dict[str, tuple[Severity, str]]:
-    """Severity and summary of every rule by its id."""
+    """Severity and summary of every rule of flyby's own by its id."""
     known: list[Rule[ProgramSubject] | Rule[RunSubject]] = [*PROGRAM_RULES, *RUN_RULES]
     own = {
         CANNOT_READ: (Severity.ERROR, "text that cannot be read"),
@@ -43,6 +54,7 @@ def check(
     robot: Robot,
     start: JointTarget | None = None,
     around: Callable[[Sequence[DrivenPart]], Iterable[Finding]] | None = None,
+    others: OtherRules = _NONE,
 ) -> tuple[Finding, ...]:
     """All findings, in the order of the program's text.
 
@@ -53,15 +65,18 @@ def check(
         vendor, robot: whose it is.
         start: where the robot stands; None for the program's own start, else its first target.
         around: finds what the parts that can be driven meet in their cell; None without one.
+        others: rules beside flyby's own.
     """
     wording = None if vendor.speaks is None else vendor.speaks.wording
     subject = ProgramSubject(program, robot, wording)
-    found = [f for rule in PROGRAM_RULES for f in rule.findings(subject, program)]
+    found = [
+        f for rule in (*PROGRAM_RULES, *others.of_program) for f in rule.findings(subject, program)
+    ]
     parts, failures = _driven(program, Controller(vendor, robot), start)
     found += failures
     for part in parts:
         subject_of_run = RunSubject(part.run, robot)
-        for rule in RUN_RULES:
+        for rule in (*RUN_RULES, *others.of_run):
             for finding in rule.findings(subject_of_run, part.run.program):
                 move = None if finding.move is None else part.first + finding.move
                 found.append(replace(finding, move=move))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 from ...core.display import counted
 from ...core.driving.driven_program import DrivenProgram
-from ...core.errors import MotionError
+from ...core.errors import InputError, MotionError
 from ...core.motion.emulator import run as core_run
 from ...core.motion.path.path import Path
 from ...core.motion.timing.timing import Timing
@@ -86,6 +87,24 @@ class Run(DrivenProgram):
     def timing(self) -> Timing:
         """The stamp, before any smoothing in time; see `whole` for what is raised."""
         return self.whole.timing
+
+    def exported(self, file: str | FilePath) -> bytes:
+        """The motion for other software, by the plugin whose files end as this one.
+
+        Raises:
+            InputError: there is none, or it makes no bytes.
+            MotionError: a move cannot be driven.
+        """
+        from ..catalogue import registry
+
+        exporter = registry().exporter_of(file)
+        made = exporter.export(self.whole)
+        if not isinstance(made, bytes):
+            raise InputError(
+                f"the plugin that exports {exporter.name} is at fault: it gives no bytes, but "
+                f"{type(made).__name__}"
+            )
+        return made
 
     @cached_property
     def report(self) -> Report:

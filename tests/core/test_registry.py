@@ -12,8 +12,9 @@ import pytest
 from flyby.core import registry as registry_module
 from flyby.core.errors import InputError, UnknownNameError
 from flyby.core.hookspec import VendorRegister, hookimpl
+from flyby.core.plugins.loading import BrokenPlugin
 from flyby.core.program.program import Program
-from flyby.core.registry import BrokenPlugin, Registry
+from flyby.core.registry import Registry
 from flyby.core.vendor import Vendor
 
 
@@ -149,7 +150,7 @@ def adding(what: Any) -> ModuleType:
         (raising_hook(ZeroDivisionError("by design")), ZeroDivisionError, "by design"),
         (raising_hook(SystemExit("leaves")), SystemExit, "leaves"),
         (without_marker(), InputError, "@hookimpl"),
-        (plugin(), InputError, "adds no vendor"),
+        (plugin(), InputError, "adds nothing"),
         (plugin("twin", "twin"), InputError, "'twin' is registered already"),
         (plugin("acme"), InputError, "'acme' is registered already"),
         (plugin("empty", robots={}), InputError, "robots"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...core.hookspec import VendorRegister, hookimpl
-from ...core.vendor import vendor_of
+from ..packaged import vendor_of
 from .dialect import RAPID
 from .language import SUFFIXES, Rapid
 

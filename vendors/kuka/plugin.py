@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...core.hookspec import VendorRegister, hookimpl
-from ...core.vendor import vendor_of
+from ..packaged import vendor_of
 from .dialect import KRL
 from .language import Krl
 from .run.suffixes import COMPANIONS, PROGRAMS

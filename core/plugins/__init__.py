@@ -1,0 +1,1 @@
+"""What distributions add beside vendors, and how plugins are taken in."""

@@ -1,0 +1,1 @@
+"""What a distribution can add to flyby beside a vendor."""
