@@ -89,6 +89,12 @@ class Reads:
         """The origin of a part of a move, when all reads are known."""
         if part.predefined is not None:
             return Origin(Ownership.SHARED, part.span, part.predefined)
+        if not part.sources:
+            return Origin(Ownership.DERIVED, part.span)
+        first = part.sources[0]
+        if first is not None and len(part.sources) == 1:
+            own = Ownership.OWNED if self._alone(first, move) else Ownership.SHARED
+            return Origin(own, part.span, first.datum, tuple(first.numbers))
         sources = [source for source in part.sources if source is not None]
         if not sources:
             return Origin(Ownership.DERIVED, part.span)
@@ -102,9 +108,9 @@ class Reads:
         return Origin(
             Ownership.OWNED if alone else Ownership.SHARED,
             part.span,
-            sources[0].datum if len(part.sources) == 1 else None,
+            None,
             tuple(numbers),
-            tuple(data) if len(part.sources) > 1 and any(data) else (),
+            tuple(data) if any(data) else (),
         )
 
     def _alone(self, source: Source, move: int) -> bool:

@@ -7,6 +7,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Self
 
@@ -16,6 +17,8 @@ from .damage import Damage
 
 _WIDE = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
 """Codecs of two bytes a character, by the mark that their files begin with."""
+_SPAN = partial(tuple.__new__, Span)
+"""A span of its parts, without the function of its class in between: every node has one."""
 LARGEST_FILE = 20_000_000
 """Bytes. The largest programs seen have two million; what is larger is no program."""
 MOST_LINES = 500_000
@@ -146,7 +149,7 @@ class SourceText:
         lines, row = self._lines, self._row
         if not (lines[row] <= start and (row + 1 == len(lines) or start < lines[row + 1])):
             row = self._row = bisect_right(lines, start) - 1  # places asked for are often near
-        return Span(self.file, row + 1, start - lines[row] + 1, start, end)
+        return _SPAN((self.file, row + 1, start - lines[row] + 1, start, end))
 
     def error(self, message: str, start: int, end: int | None = None) -> SourceError:
         """An error at ``start``, to be raised."""

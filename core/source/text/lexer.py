@@ -100,10 +100,12 @@ class Lexicon:
         starts: list[int] = []
         ends: list[int] = []
         looks = {} if special is None else special
-        match, fold, keywords, position = self.token.match, self.fold, self.keywords, start
+        fold, keywords, position = self.fold, self.keywords, start
         seen = unbroken(text)
+        follow, groups = self.token.scanner, {n: g for g, n in self.token.groupindex.items()}
+        match = follow(seen, position).match  # each goes on where the last one ended
         while True:
-            found = match(seen, position)
+            found = match()
             if found is None:
                 blank = self.blank.match(seen, position)
                 at = position if blank is None else blank.end()
@@ -111,12 +113,14 @@ class Lexicon:
                     raise source.error(self.stray(seen, at), at + base)
                 source.damage.characters[at + base] = self.stray(seen, at)
                 position = _behind_stray(seen, at)
+                match = follow(seen, position).match
                 kinds.append(STRAY)
                 starts.append(at + base)
                 ends.append(position + base)
                 continue
-            kind = found.lastgroup or ""
-            start, position = found.span(kind)
+            group = found.lastindex or 0
+            kind = groups[group]
+            start, position = found.span(group)
             if kind == "symbol":
                 kind = seen[start:position]
             elif kind == "name":
@@ -124,7 +128,10 @@ class Lexicon:
                 if word in keywords:
                     kind = word
             elif kind in looks:
-                kind, position = looks[kind](kinds, start, position)
+                kind, end = looks[kind](kinds, start, position)
+                if end != position:
+                    position = end
+                    match = follow(seen, position).match
                 if not kind:
                     continue
             elif kind == "end":

@@ -190,6 +190,11 @@ class _MoveReader:
 
     def _found(self, expression: Expression, kind: str, type_: Type) -> Located:
         evaluator = self.run.evaluator
+        named = expression if isinstance(expression, Name) and not expression.path else None
+        if named is not None:
+            fixed = evaluator.fixed_value(named, type_, self.scope)
+            if fixed is not None:
+                return fixed
         found = evaluator.locate(expression, self.scope)
         if isinstance(expression, Name) and not expression.path and found.cell is None:
             answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
@@ -224,6 +229,8 @@ class _MoveReader:
                 f"[0,0,0,0]): they come at run time{answerable(Unknown('', expression.span, text))}"
             )
         evaluator.check_located(found, type_, use, expression.span)
+        if named is not None:
+            evaluator.keep_fixed(found)
         return found
 
     def _settled(self, expression: Expression, kind: str, type_: Type) -> Located:

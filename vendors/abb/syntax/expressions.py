@@ -162,24 +162,29 @@ def parse_braces(cursor: Cursor) -> tuple[Expression, ...]:
 def parse_arguments(cursor: Cursor, end: str) -> tuple[tree.Argument, ...]:
     """The arguments of a call up to the token ``end``: ``a, b:=c\\Option:=d, \\Switch``."""
     arguments: list[tree.Argument] = []
-    while cursor.kind != end:
-        if arguments and end == ";" and cursor.ends_without_semicolon:
-            break
-        if arguments and not cursor.accept(",") and cursor.kind != "\\":
+    kinds = cursor.kinds
+    while (kind := kinds[cursor.index]) != end:
+        if kind == "," and arguments:
+            cursor.index += 1
+        elif arguments and kind != "\\":
+            if end == ";" and cursor.ends_without_semicolon:
+                break
             raise cursor.unexpected(f"',' or '{end}'")
         arguments.append(_argument(cursor))
     return tuple(arguments)
 
 
 def _argument(cursor: Cursor) -> tree.Argument:
-    start = cursor.start
-    if not cursor.accept("\\"):
-        named = cursor.kind == NAME and cursor.peek() == ":="
-        name = cursor.name("an argument's name").lower() if named else None
-        if named:
+    kinds, index = cursor.kinds, cursor.index
+    if kinds[index] != "\\":
+        name = None
+        if kinds[index] == NAME and kinds[index + 1] == ":=":
+            name = cursor.name("an argument's name").lower()
             cursor.advance()
         value = parse_expression(cursor)
-        return tree.Argument(value.span, value, parameter=name)
+        return tree.Argument(value.span, value, None, False, name)
+    start = cursor.start
+    cursor.index += 1
     option = cursor.name("the name of an optional argument").lower()
     if cursor.accept(":="):
         given: Expression | None = parse_expression(cursor)

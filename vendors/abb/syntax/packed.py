@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 
 from ....core.errors import Span
 from ....core.source.text.files import SourceText
 from .tree import Aggregate, Number, Packed
 
+_SPAN = partial(tuple.__new__, Span)
+"""A span of its parts: most of a program's text are numbers."""
 _NUMBER = re.compile(r"-?[0-9][0-9.eE+-]*")
 
 
@@ -17,7 +20,7 @@ def number_spans(packed: Packed) -> tuple[Span, ...]:
     file, line, column, start = whole.file, whole.line, whole.column, whole.start
     places = [found.span() for found in _NUMBER.finditer(text)]
     if "\n" not in text and "\r" not in text:
-        return tuple([Span(file, line, column + a, start + a, start + b) for a, b in places])
+        return tuple([_SPAN((file, line, column + a, start + a, start + b)) for a, b in places])
     source = SourceText(text, file)
     return tuple(_place(whole, source, a, b) for a, b in places)
 

@@ -91,6 +91,7 @@ class Evaluator:
         self._elsewhere: dict[str, Value] = {}
         self._shared_elsewhere: set[str] = set()
         self._assumed: dict[tuple[str, str], tuple[Span, str]] = {}  # where, and for what, first
+        self._fixed: dict[int, Located] = {}
         self._checked: dict[int, tuple[Value, Type]] = {}
         self._special = {**SPECIAL, **special}
         self._signals = signals
@@ -197,6 +198,17 @@ class Evaluator:
         check_type(found.value, type_, use, span, found.type, self._text_of(span))
         if found.cell is not None:
             self._checked[id(found.value)] = (found.value, type_)
+
+    def fixed_value(self, name: tree.Name, type_: Type, scope: Scope) -> Located | None:
+        """A constant that was found good for a use before: most moves read the same few."""
+        cell = self.cell(name, scope)
+        found = None if cell is None else self._fixed.get(id(cell))
+        return found if found is not None and found.type is type_ else None
+
+    def keep_fixed(self, found: Located) -> None:
+        """Keep a value that is found good, if it is a constant."""
+        if found.cell is not None and found.cell.constant:
+            self._fixed[id(found.cell)] = found
 
     def number(self, expression: tree.Expression, scope: Scope, use: str) -> float:
         """A known num."""
