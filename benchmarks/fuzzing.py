@@ -112,7 +112,7 @@ def _bytes(file: SourceFile) -> bytes:
 def _decoded(data: bytes, name: str) -> tuple[str, str]:
     try:
         return decode(data, name)
-    except FlybyError:  # UTF-16 is refused before the reader sees it
+    except FlybyError:  # what begins with a mark and is damaged does not come to the reader
         return data.decode("latin-1"), "latin-1"
 
 

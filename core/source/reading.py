@@ -124,9 +124,11 @@ def read_with(
         read: a vendor's function from files to a program.
     """
     program = _to_known_places(files, main, options, read)
-    stray = filter(None, (wide_file(files[main]), *map(stray_return, files.values())))
+    odd = filter(
+        None, (told(file) for file in files.values() for told in (wide_file, stray_return))
+    )
     reading = Reading(dict(files), main, options, read)
-    return replace(program, notes=(*program.notes, *stray), reading=reading)
+    return replace(program, notes=(*program.notes, *odd), reading=reading)
 
 
 def _to_known_places(

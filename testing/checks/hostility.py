@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import codecs
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -61,17 +60,14 @@ class HostilityChecks(Subject):
                 for data in encoded.values():
                     assert data in kept, f"{name}: the file's bytes are not kept"
 
-    def test_utf_16_is_refused(self) -> None:
-        self.need("reader", "writer")
-        _, sources = self.sample()
-        for codec in ("utf-16-le", "utf-16-be"):
-            mark = codecs.BOM_UTF16_LE if codec.endswith("le") else codecs.BOM_UTF16_BE
-            with pytest.raises(FlybyError):
-                self.read_bytes({f: mark + text.encode(codec) for f, text in sources.items()})
-
     def _encodings(self, sources: dict[str, str]) -> dict[str, dict[str, bytes]]:
         """The same program in other bytes, by what is peculiar about them."""
         found = {"CR LF": {f: t.replace("\n", "\r\n").encode() for f, t in sources.items()}}
+        for codec, mark in (
+            ("utf-16-le", codecs.BOM_UTF16_LE),
+            ("utf-16-be", codecs.BOM_UTF16_BE),
+        ):
+            found[codec] = {f: mark + text.encode(codec) for f, text in sources.items()}
         if self.comment_sign is None:
             return found
         for codec, words in (

@@ -7,8 +7,8 @@ from ....core.source.execution.answers import Fields
 
 _FRAME = dict.fromkeys("XYZABC", 0.0)
 _AXES: dict[str, Answer] = {"A1": 0.0, "A2": -90.0, "A3": 90.0, "A4": 0.0, "A5": 0.0, "A6": 0.0}
-_FDAT = {"TOOL_NO": 1.0, "BASE_NO": 0.0, "IPO_FRAME": "#BASE"}
-_PDAT = {"VEL": 100.0, "ACC": 100.0, "APO_DIST": 100.0}
+_FDAT: dict[str, Answer] = {"TOOL_NO": 1.0, "BASE_NO": 0.0, "IPO_FRAME": "#BASE"}
+_PDAT: dict[str, Answer] = {"VEL": 100.0, "ACC": 100.0, "APO_DIST": 100.0}
 EXPECTED: dict[str, tuple[str, Answer]] = {
     "bool": ("true or false", False),
     "int": ("whole number", 0.0),

@@ -60,7 +60,7 @@ class PackedScript(SourceFile):
     @property
     def data(self) -> bytes:
         """The file's bytes."""
-        return packed_like(self.text.encode(self.codec), self.packed)
+        return packed_like(SourceFile(self.name, self.text, self.codec).data, self.packed)
 
 
 @dataclass(frozen=True, slots=True)
