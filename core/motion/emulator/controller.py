@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ...door import spelt
 from ...errors import FaultCause, MotionError, Note
 from ...program.move import Move
 from ...program.program import Program
@@ -415,7 +416,7 @@ def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
         )
     return MotionError(
         "the program goes nowhere: this and every other move ends where the robot stands; let it "
-        "begin elsewhere",
+        f"begin elsewhere ({spelt('start')})",
         0,
         cause=FaultCause.NOWHERE,
     )

@@ -192,3 +192,15 @@ def test_parts_of_an_answered_position_are_answered(tmp_path: Path) -> None:
 def test_an_answer_of_another_type_is_named_with_its_file(tmp_path: Path) -> None:
     with pytest.raises(SourceError, match=r"a BOOL, not 1 \(ready as answered in .*answers\.toml"):
         read(START + "IF ready THEN\n" + START + "ENDIF\n", tmp_path, "ready = 1")
+
+
+def test_what_an_interrupt_sends_is_not_written_by_it(tmp_path: Path) -> None:
+    """A state server sends where the robot is; that is not what makes it unknown."""
+    sends = 'RET=EKI_SetReal("state","A1",$AXIS_ACT.A1)\nRET=EKI_SetInt("state","n",sent)\n'
+    text = (
+        "INTERRUPT DECL 16 WHEN $TIMER_FLAG[1]==TRUE DO tell( )\nINTERRUPT ON 16\nsent=1\n" + START
+    )
+    body = text + "IF sent==1 THEN\n" + START + "ENDIF\nEND\nDEF tell( )\n" + sends
+    program = read(body, tmp_path)
+    assert len(program.moves) == 2
+    assert not [q for q in program.questions if q.key.lower() in ("$axis_act", "sent")]

@@ -298,8 +298,10 @@ def test_an_entry_can_be_chosen() -> None:
     text = f"x = 1\ndef a():\n{GO.format('x')}\nend\ndef b():\n{GO.format(2)}\nend\na()"
     assert [m.target.joints[0] for m in program(text, "b").moves] == [2]  # type: ignore[union-attr]
     assert "there is no function 'c'" in refusal(text, "c")
-    assert "choose as the entry one of a (no moves), b" in refusal("def a():\nend\ndef b():\nend")
-    assert "choose as the entry one of a(x)" in refusal("def a(x):\nend")
+    both = f"def a():\n{GO.format(1)}\nend\ndef b():\n{GO.format(2)}\nend"
+    assert "choose as the entry one of a (1 move), b" in refusal(both)
+    assert "choose as the entry one of a(x)" in refusal(f"def a(x):\n{GO.format(1)}\nend")
+    assert "it is a library of others" in refusal("def a():\nend\ndef b():\nend")
 
 
 def test_halt_ends_the_program_everywhere() -> None:
@@ -434,3 +436,25 @@ def test_answers_to_outputs() -> None:
     assert joints(text, sequences={key("get_digital_out(1)"): (True,)}) == [1, 9]
     skipped = "set_digital_out(1, False)\ngrip_it()\n" + branch("get_digital_out(1)")
     assert joints(skipped, skipped=frozenset({"grip_it"})) == [1, 9]
+
+
+def test_a_thread_is_chosen_as_the_entry() -> None:
+    text = """def prog():
+  set_tcp(p[0, 0, 0.1, 0, 0, 0])
+  low = [0, -1, 1, -1, -1, 0]
+  thread watch():
+    while True:
+      movej(low)
+      movej([0, -1, 1, -1, -1, 1])
+    end
+  end
+  run watch()
+  movej([0, -1.2, 1, -1, -1, 0])
+end
+"""
+    program = read(text, "prog.script", ReadOptions(entry="watch"))
+    assert len(program.moves) == 2
+    assert program.moves[0].tool.tcp.position == (0.0, 0.0, 0.1)
+    assert program.moves[0].target == JointTarget((0.0, -1.0, 1.0, -1.0, -1.0, 0.0), name="low")
+    with pytest.raises(SourceError, match=r"define prog \(\d moves\), watch \(2 moves\)"):
+        read(text, "prog.script", ReadOptions(entry="guard"))

@@ -188,7 +188,8 @@ class KrlTree:
         """Names of the data that a call may write: those that are passed by reference."""
         body = self.called(call, home)
         found = None if body is None else self.routine(body)
-        if found is None and call.name in COMPUTED:
+        known = kept(call.name) if found is None else None
+        if found is None and (call.name in COMPUTED or (known and not known.writes)):
             return
         for k, argument in enumerate(call.arguments):
             given = found[0].parameters[k : k + 1] if found is not None else ()

@@ -32,6 +32,7 @@ _MESSAGE = Kept("messages and files do not move the robot", writes=True)
 _OUTPUT = Kept("outputs do not move the robot", stops=True, outputs=True)
 _TOOL = Kept("grippers, guns and processes are not emulated", stops=True, outputs=True)
 _CHANNEL = Kept("what it brings is not known", stops=True, writes=True)
+_SENDING = Kept("other computers are not emulated", stops=True)
 _SENSOR = Kept("corrections by sensors are not emulated")
 _CLOCK = Kept("supervision does not change the programmed motion")
 
@@ -48,6 +49,7 @@ _TABLE: tuple[tuple[str, Kept], ...] = (
     (r"kp_?gun\w*|servogun\w*|user_?gun\w*|(laser|glue|weld)_?(on|off|start|stop)", _TOOL),
     (r"arc_?(on|off|swi|set|main\w*|ini\w*)?", _TOOL),
     (r"cwrite|cread|copen|cclose|sread|swrite|cast_from|cast_to|cioctl", _CHANNEL),
+    (r"eki_(set|send|init|open|close|clear|lock|unlock|checkbuffer)\w*", _SENDING),
     (r"krl_f\w+|eki_\w+|eth_\w+|xml_\w+", _CHANNEL),
     (r"(set|get|exists|clear)_krl\w*|msg\w+|dialog\w*|logtext\w*", _MESSAGE),
     (r"strclear|stradd|strcopy|strtoint|strtoreal|inttostr|realtostr", _MESSAGE),

@@ -85,7 +85,7 @@ class OutputWrites:
                 where = Scope("", module)
                 declared = (s.name for s in part.statements if isinstance(s, Declaration))
                 own = frozenset((*declared, *(p.name for p in routine.parameters)))
-            for name in sorted(names - own - MOTION - OUTPUTS.keys()):
+            for name in sorted(names - own - MOTION - OUTPUTS.keys() - POSITION.keys()):
                 datum = Name(span, name, name.upper())
                 cell = self._data.find(name, where) or self._data.implicit(datum)
                 if not cell.constant and cell.signal is None:

@@ -12,8 +12,9 @@ from ....core.errors import EntryError, SourceError
 from ....core.program.entry_point import ALL, EntryPoint, listed
 from ....core.program.program import Program
 from ....core.source.text.damage import nothing_driven
-from ..syntax.traversal import all_calls
-from ..syntax.tree import Assign, Block, Call, Define
+from ..motion.settings import CALLS
+from ..syntax.traversal import all_calls, all_statements, run_in
+from ..syntax.tree import Assign, Block, Call, Define, Evaluate, Statement
 from .exits import Finished
 from .interpreter import Interpreter
 
@@ -47,9 +48,12 @@ def run_program(
         return Program((), name, entries=points())
     with suppress(Finished):
         if entry is not None:
-            define = _named(blocks, entry, run)
+            define, around = _named(blocks, entry, run)
             for block in blocks:
                 run.run_top(tuple(s for s in block if isinstance(s, Assign)))
+            for outer in around:
+                run.root.define(outer.body)
+                run.run_top(tuple(filter(_sets, outer.body)))
             name = define.name
             if call:
                 run.run_top(call)
@@ -89,21 +93,38 @@ def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:
     return define.name
 
 
+def _sets(statement: Statement) -> bool:
+    """Whether a statement of the function round a thread makes what the thread works with."""
+    if isinstance(statement, Evaluate) and isinstance(statement.expression, Call):
+        return statement.expression.name in CALLS
+    return isinstance(statement, Assign)
+
+
 def _points(
     run: Interpreter, blocks: Sequence[Block], begun: str | None = None
 ) -> tuple[EntryPoint, ...]:
     """The functions that the files define; ``begun`` is the name of the one that was run."""
     return tuple(
-        EntryPoint(
-            d.name,
-            tuple(p.name for p in d.parameters if p.default is None),
-            run.analysis.move_count(d.body),
-            d.name == begun,
-        )
+        _point(run, d, d.name == begun)
         for block in blocks
         for d in block
         if isinstance(d, Define) and d.kind != "thread"
     )
+
+
+def _point(run: Interpreter, define: Define, begun: bool = False) -> EntryPoint:
+    needed = tuple(p.name for p in define.parameters if p.default is None)
+    return EntryPoint(define.name, needed, run.analysis.move_count(define.body), begun)
+
+
+def _inside(define: Define, name: str) -> tuple[Define, ...]:
+    """The way to a function or thread that is defined in another one; empty if it is not."""
+    for statement in run_in(define.body):
+        if isinstance(statement, Define):
+            found = (statement,) if statement.name == name else _inside(statement, name)
+            if found:
+                return (define, *found)
+    return ()
 
 
 def _start(run: Interpreter, define: Define) -> None:
@@ -149,12 +170,21 @@ def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
     )
 
 
-def _named(blocks: Sequence[Block], entry: str, run: Interpreter) -> Define:
+def _named(
+    blocks: Sequence[Block], entry: str, run: Interpreter
+) -> tuple[Define, tuple[Define, ...]]:
+    """The function or thread of a name, and those that it stands in, the outermost first."""
     defines = [s for block in reversed(blocks) for s in block if isinstance(s, Define)]
     for define in defines:
         if define.name == entry:
-            return define
-    known = listed(_points(run, blocks)) or "none"
+            return define, ()
+    for define in defines:
+        found = _inside(define, entry)
+        if found:
+            return found[-1], found[:-1]
+    threads = [d for b in blocks for d in all_statements(b) if isinstance(d, Define)]
+    moving = [d for d in threads if d.kind == "thread" and run.analysis.moves(d.body)]
+    known = listed([*_points(run, blocks), *map(partial(_point, run), moving)]) or "none"
     raise SourceError(
         f"there is no function '{entry}' to start with; the files define {known}",
         run.texts.span(0, 0),
