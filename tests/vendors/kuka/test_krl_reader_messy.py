@@ -253,3 +253,16 @@ def test_damage_anywhere_is_met(tmp_path_factory, krl, data):
         krl(src=damaged, files={"tueren.dat": MESSY_DATA})
     except FlybyError as error:
         assert ".src:" in str(error)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "&PARAM TPVW_VERSION = 8.1.8\nDEF folge1( )\n{}END\n",
+        "DEF folge1( )\n;FOLD PTP VB=100% VE=0% ACC=100% RobWzg=1 Base=0 P;%{{P}}%MKUKATPVW\n{}END\n",
+    ],
+)
+def test_programs_of_a_vkrc_are_read_with_a_warning(krl, text) -> None:
+    program = krl(src=text.format("PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0}\n"))
+    assert len(program.moves) == 1
+    assert any("a VKRC (VW System Software)" in note.message for note in program.notes)

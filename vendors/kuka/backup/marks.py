@@ -17,7 +17,11 @@ from dataclasses import dataclass
 
 MACHINE, MODEL, CONFIG = "$machine.dat", "$robcor.dat", "$config.dat"
 _ROBOT, _CONTROLLER, _ABOVE = "r1", "steu", "krc"
-_ROOMS = frozenset({"program", "system", "mada", "tp"})
+_VKRC = frozenset({"folgen", "ups", "makros"})
+"""Folders of R1 in which controllers of Volkswagen's kind (VKRC, with the VW System Software) keep
+programs: ``Folge1.src``, ``UP99.src``, ``Makro0.src``. Source: headers of such programs,
+robot-forum.com, thread 34305."""
+_ROOMS = frozenset({"program", "system", "mada", "tp"}) | _VKRC
 _SOURCES = (".src", ".sub", ".dat")
 
 
@@ -49,6 +53,13 @@ def layout_of(names: Sequence[str]) -> Layout:
     copies = [one for one in robots[1:] if not _inside(one, robot)]
     beside = [one for one in steu if _above(one) == _above(robot)]
     return Layout(robot, next(iter((*beside, *steu)), None), tuple(copies))
+
+
+def of_vkrc(names: Sequence[str], layout: Layout) -> bool:
+    """Whether an archive is one of a VKRC."""
+    inside = f"{layout.robot}/" if layout.robot else ""
+    rooms = (name[len(inside) :].split("/") for name in names if name.startswith(inside))
+    return any(len(room) > 1 and room[0].casefold() in _VKRC for room in rooms)
 
 
 def _roots(name: str) -> Iterator[str]:

@@ -7,6 +7,7 @@ from pathlib import Path, PurePosixPath
 
 from ....core.backup.backup import Backup
 from ....core.backup.contents import BackupNotes, listed
+from ....core.door import spelt
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from .arms import lists_of, robots_of, tables_in
@@ -14,7 +15,7 @@ from .contents import Contents
 from .declared import Declared, declared_in, machines_of
 from .figures import motion_figures
 from .identity import identity_of
-from .marks import CONFIG, MACHINE, root_in
+from .marks import CONFIG, MACHINE, of_vkrc, root_in
 from .signals import signals_in
 from .tasks import source_files, tasks_of
 
@@ -31,6 +32,13 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
             f"or programs, and no {MACHINE}, is in it"
         )
     layout = contents.layout
+    if of_vkrc(contents.names, layout):
+        raise InputError(
+            f"{source}: an archive of a VKRC (VW System Software, programs in Folgen, UPs and "
+            "Makros): its inline forms set speeds and stops by routines of Volkswagen's, which are "
+            "not read. Export the programs for a KSS controller from the offline system; the arm "
+            f"alone may be named by its file, {MACHINE} in R1/Mada ({spelt('robot')})"
+        )
     if layout.copies:
         notes.add(f"{listed(layout.copies)} left out: {layout.robot or 'R1'} is read")
     lists = lists_of(contents)

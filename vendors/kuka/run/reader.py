@@ -28,6 +28,8 @@ component of ``$APO`` that counts.
 
 from __future__ import annotations
 
+import re
+
 from ....core.errors import Note, SourceError, Span, UnknownNameError
 from ....core.program.entry_point import ALL, entry_call, listed
 from ....core.program.program import Program
@@ -40,6 +42,9 @@ from ..syntax.tree import Expression, Invoke, Routine
 from ..values.library import Library, suffix_of
 from .interpreter import Interpreter
 from .suffixes import COMPANIONS
+
+_VKRC = re.compile(r"(?im)^&PARAM[ \t]+TPVW_VERSION|^[^\r\n]*;[^\r\n]*%MKUKATPVW\b")
+"""In the head of a program, or at its inline forms."""
 
 
 def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
@@ -83,7 +88,7 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
         program = Program(
             run.statements(),
             entry.text,
-            notes=(*notes, *run.notes()),
+            notes=(*notes, *_of_vkrc(files, start), *run.notes()),
             questions=run.course.questions(),
             entries=() if run.driven else run.entry_points(library.main_unit.routines, entry),
             calls=run.calls(),
@@ -92,6 +97,18 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
         )
         run.forget()
         return program
+
+
+def _of_vkrc(files: Files, start: Span) -> tuple[Note, ...]:
+    """What is said of programs of Volkswagen's controllers."""
+    if not any(_VKRC.search(file.text) for file in files.values()):
+        return ()
+    message = (
+        "this is a program of a VKRC (VW System Software): what its inline forms say of speed "
+        "and approximation (VB, VE, ACC, Genau) is set by Volkswagen's own routines, which are "
+        "not carried out; the times are not those of the robot"
+    )
+    return (Note(message, span=start),)
 
 
 def _arguments(library: Library, entry: Routine, text: str | None) -> tuple[Expression | None, ...]:

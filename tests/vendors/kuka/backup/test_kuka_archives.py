@@ -350,3 +350,13 @@ def test_what_is_none(tmp_path) -> None:
     (tmp_path / "a.src").write_text("DEF a()\nEND\n")
     with pytest.raises(InputError, match="no archive of a KUKA controller"):
         OPENER.open(tmp_path, tmp_path, find_robot)
+
+
+@pytest.mark.parametrize("room", ["Folgen/Folge1.src", "UPs/UP99.src", "Makros/Makro0.src"])
+def test_an_archive_of_a_vkrc_is_refused_by_its_name(tmp_path, room: str) -> None:
+    files = archive() | {f"KRC/R1/{room}": "DEF FOLGE1( )\nEND\n"}
+    with pytest.raises(InputError, match=r"a VKRC \(VW System Software.* for a KSS controller"):
+        opened(tmp_path, files)
+    alone = {f"KRC/R1/{room}": "DEF FOLGE1( )\nEND\n"}
+    with pytest.raises(InputError, match="a VKRC"):
+        opened(tmp_path / "alone", alone)
