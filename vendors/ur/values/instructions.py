@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ....core.door import spelt
 from ....core.errors import LeftOpenError, Span
 from ....core.source.text.lexer import words
 
@@ -146,6 +147,8 @@ def streamed(name: str, span: Span) -> LeftOpenError:
     """
     return LeftOpenError(
         f"{name} drives the robot in steps of a control loop, which are not emulated, and there is "
-        "nothing else to drive: write the motion as movej, movel or movep",
+        "nothing else to drive: say where it drives in a file of joints over time "
+        f'({spelt("answers")}: [streams] {name} = "joints.csv"), or write the motion as movej, '
+        "movel or movep",
         span,
     )
