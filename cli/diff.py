@@ -174,9 +174,16 @@ def _routine_cells(one: RoutineDifference, *, near: bool) -> tuple[str, ...]:
     share = ""
     if before and after is not None:
         share = f"{100 * (after / before - 1):+.1f}"
-    apart = "" if one.distance is None else f"{1e3 * one.distance:.2f}"
-    cells = (one.name, _seconds(before), _seconds(after), share, apart)
+    cells = (one.name, _seconds(before), _seconds(after), share, _apart(one))
     return (*cells, *(_millimetres(value) for value in one.clearances)) if near else cells
+
+
+def _apart(one: RoutineDifference) -> str:
+    """How far the paths are apart; of what is not driven to its end, that this is not known."""
+    in_part = None in one.times
+    if one.distance is None:
+        return "not driven" if in_part else ""
+    return f"{1e3 * one.distance:.2f}" + (" in part" if in_part else "")
 
 
 def _seconds(time: float | None) -> str:

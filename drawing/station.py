@@ -30,6 +30,13 @@ def draw_station(
         actions: of each robot.
         kind: ``png``, ``pdf`` or ``svg``.
     """
+    return figure_file(make_station_figure(station, run, actions), kind)
+
+
+def make_station_figure(
+    station: RobotStation, run: StationRun, actions: Mapping[str, Sequence[Action]]
+) -> Figure:
+    """The same as a figure."""
     finite = [change.time for change in run.changes]
     finite += [s.end for s in run.schedules.values() if np.isfinite(s.end)]
     finite += [spell.begin for s in run.schedules.values() for spell in s.waits]
@@ -59,8 +66,8 @@ def draw_station(
         axes.barh([np.nan], [0.0], color=colour, label=label)
         for colour, label in ((_MOVE, "moves, one by one"), (_WAIT, "waits"), (_SIGNAL, "on"))
     ]
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=3)
-    return figure_file(figure, kind)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
 
 
 def _bar(

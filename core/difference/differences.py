@@ -27,6 +27,7 @@ class Differing(StrEnum):
     MOVE_TOOL = "tool of a move"
     MOVE_FRAME = "frame of a move"
     MOVE_LOAD = "load of a move"
+    WAIT = "wait"
 
 
 @dataclass(frozen=True, slots=True)

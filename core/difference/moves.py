@@ -31,7 +31,7 @@ def move_differences(
         before, after: its moves in the order of execution.
     """
     before, after = _once(before), _once(after)
-    keys = [[_key(move) for move in side] for side in (before, after)]
+    keys = [[move_key(move) for move in side] for side in (before, after)]
     matcher = SequenceMatcher(None, keys[0], keys[1], autojunk=False)
     for what, a, b, c, d in matcher.get_opcodes():
         if what == "equal":
@@ -56,7 +56,7 @@ def _once(moves: Sequence[Move]) -> list[Move]:
     """Moves without those that a loop has driven already, from the same line to the same place."""
     found: dict[object, Move] = {}
     for move in moves:
-        found.setdefault((move.statement, _key(move)), move)
+        found.setdefault((move.statement, move_key(move)), move)
     return list(found.values())
 
 
@@ -123,7 +123,8 @@ def _same_kind(old: Move, new: Move) -> bool:
     return type(old) is type(new)
 
 
-def _key(move: Move) -> tuple[str, ...]:
+def move_key(move: Move) -> tuple[str, ...]:
+    """What a move is known again by: its kind and its point."""
     kind = type(move).__name__
     target = move.target
     if target.name is not None:

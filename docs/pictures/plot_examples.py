@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 import flyby
 from flyby.drawing.cell import make_cell_figure
 from flyby.drawing.run import make_figure
+from flyby.drawing.station import make_station_figure
 from flyby.drawing.style import STYLE
 
 matplotlib.use("Agg")
@@ -48,7 +49,13 @@ def ur() -> Figure:
     return make_figure(run, run.robot)
 
 
-PICTURES = {"example_abb": abb, "example_kuka": kuka, "example_ur": ur}
+def station() -> Figure:
+    """The four robots that weld studs, on one clock."""
+    made = flyby.station(EXAMPLES / "stud_station" / "station.toml", no_proof=True)
+    return make_station_figure(made.station, made.run, made.actions)
+
+
+PICTURES = {"example_abb": abb, "example_kuka": kuka, "example_ur": ur, "example_station": station}
 
 
 def main(folder: str, names: tuple[str, ...] = tuple(PICTURES)) -> None:

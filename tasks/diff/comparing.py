@@ -25,6 +25,7 @@ from ...core.difference.data import (
 from ...core.difference.differences import Difference, Differing
 from ...core.difference.moves import move_differences
 from ...core.difference.texts import FileDifference, file_differences
+from ...core.difference.waits import wait_differences
 from ...core.errors import InputError
 from .state import MAIN, Routine, StationState, state_of
 
@@ -52,7 +53,7 @@ class RoutineDifference:
         times: s that it takes before and after; None where it cannot be driven, is not there, or
             no robot is known.
         distance: m, the greatest distance of either path of the TCP from the other one; None where
-            one of them is not known.
+            one of them is not known, or not driven to its end and the same as far as it is.
         clearances: m to the cell before and after; None without a cell.
         faults: what cannot be driven after, and could before, or is otherwise.
         mended: what could not be driven before, and can now.
@@ -179,6 +180,7 @@ def _of_programs(one: StationState, other: StationState) -> Iterator[Difference]
     for name, a, b in paired(*_called_alike(old, new)):
         if a is not None and b is not None:
             yield from move_differences(name, a.moves, b.moves)
+            yield from wait_differences(name, a, b)
 
 
 def _called_alike(
@@ -300,7 +302,9 @@ def _distance(one: Routine | None, other: Routine | None) -> float | None:
         return None
     from ...core.difference.paths import greatest_distance
 
-    return greatest_distance(one.run.trajectory.position, other.run.trajectory.position)
+    found = greatest_distance(one.run.trajectory.position, other.run.trajectory.position)
+    whole = _time(one) is not None and _time(other) is not None
+    return found if whole or found > SAME_TIME else None
 
 
 def _near(one: float | None, other: float | None) -> bool:

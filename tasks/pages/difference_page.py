@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...drawing.page.content import (
     Page,
+    PageCell,
     PageColumn,
     PageRow,
     PageTable,
@@ -116,13 +117,17 @@ def _routines(found: StateDifference, tracks: dict[str, int]) -> PageTable:
         track = tracks.get(one.name)
         rows.append(
             PageRow(
-                (one.name, before, after, change, apart, *near),
+                (one.name, *map(_seconds, one.times), change, apart, *near),
                 "warning" if one.differs else "",
                 0 if track is None else track + 1,
                 None if track is None else 0.0,
             )
         )
     return PageTable("Routines", _ROUTINES, rows)
+
+
+def _seconds(time: float | None) -> PageCell:
+    return "not driven" if time is None else time
 
 
 def _differences(found: StateDifference, draft: PageDraft) -> PageTable:

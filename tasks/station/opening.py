@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError, InputError, Note, UnknownNameError
+from ...core.errors import FlybyError, InputError, Note
 from ..read import SourceOptions, read_with
 from ..setup import Setup, setup_of_program, start_of
+from .names import check_names
 
 if TYPE_CHECKING:
     from ...core.dialect import SignalWords
@@ -72,7 +73,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
                     "times are as if it did nothing; what the interlocks allow is not looked at"
                 )
             )
-    _check_signals(file, members, actions)
+    check_names(file, members, actions)
     _check_starts(file, members)
     try:
         shared = synchronised({n: m.run for n, m in members.items()}, actions, ids)
@@ -247,47 +248,6 @@ def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]
         raise InputError(f"{file.file}: robot.{member.name}: {error}") from error
     cell = setup.surroundings(program)
     return StationRobot(member.name, program, controller, cell, run, member.begins), setup
-
-
-def _check_signals(
-    file: StationFile, members: dict[str, StationRobot], actions: dict[str, tuple[Action, ...]]
-) -> None:
-    """Links lead from outputs that a program sets to inputs that one waits for."""
-    from ...core.program.signal import SetSignal, WaitSignal, levels
-    from ...core.station.plc import PLC
-    from ...core.station.station import signal_key
-
-    sets, asked = {}, {}
-    for name, doings in actions.items():
-        for action in doings:
-            if isinstance(action.does, SetSignal):
-                spelt = f"{name}.{action.does.name}"
-                sets[signal_key(spelt)] = spelt
-            elif isinstance(action.does, WaitSignal):
-                for level in levels(action.does.condition):
-                    spelt = f"{name}.{level.name}"
-                    asked[signal_key(spelt)] = spelt
-    plc = f"{PLC}."
-    targets = {signal_key(wire.target) for wire in file.wires}
-    for wire in file.wires:
-        source, target = signal_key(wire.source), signal_key(wire.target)
-        if not source.startswith(plc) and source not in sets and source not in targets:
-            raise InputError(
-                f"{file.file}: links: "
-                + str(UnknownNameError("output that a program sets", wire.source, sets.values()))
-            )
-        used = {
-            signal_key(one.name)
-            for gate in file.gates.values()
-            for one in (*gate.inputs, *gate.resets)
-        }
-        if target not in asked and target not in used:
-            raise InputError(
-                f"{file.file}: links: "
-                + str(
-                    UnknownNameError("input that a program waits for", wire.target, asked.values())
-                )
-            )
 
 
 def _check_starts(file: StationFile, members: dict[str, StationRobot]) -> None:

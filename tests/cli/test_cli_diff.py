@@ -36,6 +36,22 @@ def test_tables_and_status(flyby: Flyby, both: tuple[Path, Path]) -> None:
     assert "do not differ" in result.output
 
 
+def test_waits_and_what_is_driven_in_part(flyby: Flyby, both: tuple[Path, Path]) -> None:
+    """A wait that differs is a difference; paths that end at a fault are not 0.00 mm apart."""
+    old, new = both
+    text = old.read_text().replace("v500,z10,tool0;", "v500,fine,tool0; WaitTime 0.2;")
+    text = text.replace("ENDPROC", "MoveL Offs(p1,9000,0,0),v500,fine,tool0; ENDPROC", 1)
+    old.write_text(text)
+    new.write_text(text.replace("0.2", "0.5"))
+    result = flyby("diff", old, new, *ROBOT)
+    waits = next(line for line in result.output.splitlines() if "0.2 s" in line)
+    assert waits.split()[:2] == ["wait", "main,"] and "0.5 s" in waits
+    (routine,) = [line for line in result.output.splitlines() if line.split()[:1] == ["main"]]
+    assert routine.split() == ["main", *3 * ["not", "driven"]]
+    told = json.loads(flyby("diff", old, new, *ROBOT, "--json").stdout)
+    assert told["routines"][0]["greatest_path_distance_m"] is None
+
+
 def test_json_and_markdown(flyby: Flyby, both: tuple[Path, Path]) -> None:
     told = json.loads(flyby("diff", *both, *ROBOT, "--json").stdout)
     assert told["differs"] is True

@@ -45,7 +45,7 @@ _WORTH = 5e-4
 _CROWDED = 2.0
 """Power of the spacing of durations: energy falls steepest at the fast end."""
 _KEPT = 1e-5
-"""Of constraints, by which a program that is said so far may be off."""
+"""Of constraints, by which a program may be off and still counts as found."""
 _Served = tuple[Goal, EvaluatedProgram]
 """A goal, and what serves it best."""
 

@@ -22,7 +22,9 @@ from flyby.core.difference.differences import Differing
 from flyby.core.difference.moves import move_differences
 from flyby.core.difference.paths import greatest_distance
 from flyby.core.difference.texts import file_differences
-from flyby.core.program.move import MoveJ, MoveL
+from flyby.core.difference.waits import wait_differences
+from flyby.core.errors import Span
+from flyby.core.program.move import MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
@@ -111,6 +113,45 @@ def test_a_target_without_a_name_says_how_far_it_went() -> None:
 def test_moves_of_a_loop_count_once() -> None:
     loop = [line(0.1, "p1"), line(0.2, "p2")]
     assert found(loop * 50, [*loop, *loop]) == []
+
+
+def waits(before: Program, after: Program) -> list[tuple[str, str, str]]:
+    return [(d.name, d.before, d.after) for d in wait_differences("main", before, after)]
+
+
+STATEMENTS = st.one_of(
+    st.sampled_from(MOVES),
+    st.sampled_from([0.0, 0.2, 0.5]).map(Wait),
+    st.just(Wait(0.3, None, True)),
+)
+
+
+@given(st.lists(STATEMENTS, max_size=10), st.integers(0, 10))
+def test_a_wait_that_is_put_in_is_added_and_no_other_one_differs(
+    statements: list[MoveL | Wait], place: int
+) -> None:
+    one = Program(tuple(statements))
+    assert waits(one, one) == []
+    other = Program((*statements[:place], Wait(0.7), *statements[place:]))
+    assert [(a, b) for _, a, b in waits(one, other)] == [("", "0.7 s")]
+    assert [(a, b) for _, a, b in waits(other, one)] == [("0.7 s", "")]
+
+
+def test_a_wait_that_lasts_longer_is_named_by_the_move_before_it() -> None:
+    def program(first: float, behind: float, target: float = 0.1) -> Program:
+        span = Span("p.mod", 7, 1, 0, 9)
+        return Program(
+            (Wait(first), line(0.4, "p1"), *[line(target, "p2"), Wait(behind, span)] * 3)
+        )
+
+    assert waits(program(1.0, 0.2), program(1.5, 0.3)) == [
+        ("main, before the first move", "1 s", "1.5 s"),
+        ("main, behind p2", "0.2 s", "0.3 s"),
+    ]
+    # Neither a point that is taught again nor what a device takes is a wait.
+    assert waits(program(1.0, 0.2), program(1.0, 0.2, 0.15)) == []
+    taken = [Program((line(0.1), Wait(t, None, True))) for t in (0.5, 0.9)]
+    assert waits(*taken) == []
 
 
 def test_points_are_compared_by_name_without_case() -> None:

@@ -269,6 +269,10 @@ def test_a_wait_that_protects_nothing_can_go(write: Write) -> None:
         ('[links]\n"one.doDone" = "two.diGoo"\n', ("two.diGoo", "two.diGo")),
         ('[links]\n"three.doDone" = "two.diGo"\n', ("three.doDone", "one, two")),
         ('[links]\n"one.doDone" = { to = "two.diGo", delay_ms = [40, 10] }\n', ("delay_ms",)),
+        ('[given]\n"two.diGoo" = true\n', ("given", "two.diGoo", "two.diGo")),
+        ('[allow]\npairs = [["one.J6", "two.J7"]]\n', ("allow.pairs", "two.J7", "two.J6")),
+        ('[allow]\npairs = [["one.gun", "two.J6"]]\n', ("allow.pairs", "one.gun")),
+        ('initial = ["one.doDoen"]\n', ("initial", "one.doDoen", "one.doDone")),
         ('[logic.a]\nand = ["plc.b"]\n', ("[logic.b]",)),
         ('[logic.a]\nxor = ["one.doDone"]\n', ("needs one of and, or, latch",)),
         ("unknown = 1\n", ("unknown",)),
@@ -280,7 +284,7 @@ def test_bad_files_are_refused_with_the_place(
     programs = {"one": ["go 0", "go 1", "SetDO doDone,1"], "two": ["go 0", "WaitDI diGo,1", "go 1"]}
     file = write(programs)
     text = file.read_text()
-    file.write_text(rest + text if rest.startswith("unknown") else text + rest)
+    file.write_text(text + rest if rest.startswith("[") else rest + text)
     with pytest.raises(FlybyError) as caught:
         station(file)
     assert "station.toml" in str(caught.value)
