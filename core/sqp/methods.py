@@ -40,6 +40,12 @@ def chosen(
         raise NlpError(f"method: one of {', '.join(SolverMethod)}, not {wanted!r}") from None
     if method is SolverMethod.INTERIOR_POINT and options.step_box is not None:
         raise NlpError("step_box needs method 'sqp' or 'auto': an interior point takes no box")
+    if kind is HessianKind.LBFGS:
+        if method is SolverMethod.SQP or options.step_box is not None:
+            raise NlpError(
+                "hessian_kind 'lbfgs' needs the interior point: neither method 'sqp' nor step_box"
+            )
+        return SolverMethod.INTERIOR_POINT
     if method is not SolverMethod.AUTO:
         return method
     cold = options.warm_start is None and options.step_box is None

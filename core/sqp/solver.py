@@ -14,7 +14,8 @@ from .methods import SolverMethod, chosen
 from .options import Callback, Options, StepBox, start_point
 from .problem.errors import CallableError
 from .problem.evaluation import Point
-from .problem.hessians import HessianKind, choose_kind, make_source
+from .problem.hessians import HessianKind, choose_kind, full_or_sparse, make_source
+from .problem.limited_memory import LimitedMemory
 from .problem.nlp import NLP
 from .problem.scaled import ScaledProblem
 from .progress import SolutionEnd, SolutionProgress
@@ -125,17 +126,20 @@ class _Solution:
 
     def _iterate(self, point: Point) -> Ending:
         """Iterate until the end, which is an exception."""
-        parts = (self._problem, self._hessian, self._workspace, self._options, self._progress)
-        sequential = Sequential(*parts)
+        rest = self._workspace, self._options, self._progress
+        parts = self._problem, self._hessian, *rest
         if self._first is SolverMethod.INTERIOR_POINT and not self._full(point):
             self._used.append(SolverMethod.INTERIOR_POINT)
             InteriorSolution(*parts).run(point)
             self._progress.iterations += 1
             best = self._progress.best  # it gave up: the other method goes on, or says why not
             self._used.append(SolverMethod.SQP)
-            sequential.go_on(best.point, best.multipliers, point)
+            hessian = self._hessian
+            if isinstance(hessian, LimitedMemory):
+                hessian = make_source(full_or_sparse(self._nlp), self._problem.evaluation)
+            Sequential(self._problem, hessian, *rest).go_on(best.point, best.multipliers, point)
         self._used.append(SolverMethod.SQP)
-        sequential.run(point)
+        Sequential(*parts).run(point)
         raise AssertionError("methods end by an exception")
 
     def _full(self, point: Point) -> bool:

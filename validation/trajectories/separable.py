@@ -168,7 +168,7 @@ class Separable:
 
     def gradient(self, x: FloatArray) -> FloatArray:
         values = np.concatenate([group.slopes(x) for group in self._costs])
-        return np.bincount(self._g, values, minlength=self.n)
+        return np.asarray(np.bincount(self._g, values, minlength=self.n), np.float64)
 
     def jacobian(self, x: FloatArray) -> sparse.csc_array:
         return self._J.matrix(np.concatenate([group.slopes(x) for group in self._groups]))

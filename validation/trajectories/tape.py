@@ -59,8 +59,12 @@ class Tape:
             for kind, a, b, value in (graph.nodes[node] for node in order)
         ]
         kinds, first, second, constants = zip(*steps, strict=True) if steps else ((),) * 4
-        integers = (np.array(part, dtype=np.int64) for part in (kinds, first, second))
-        self._steps = _Steps(*integers, np.array(constants, dtype=np.float64))
+        self._steps = _Steps(
+            np.array(kinds, dtype=np.int64),
+            np.array(first, dtype=np.int64),
+            np.array(second, dtype=np.int64),
+            np.array(constants, dtype=np.float64),
+        )
         self._outputs = np.array([number[e.node] for e in outputs], dtype=np.int64)
 
     def values(self, given: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
 from ...arrays import FloatArray, IntArray
@@ -47,7 +47,7 @@ class Sparsity:
         """Whether every place has an entry: then entry k stands at row k % rows."""
         return self.size == self.shape[0] * self.shape[1]
 
-    def equals(self, rows: IntArray, starts: IntArray) -> bool:
+    def equals(self, rows: NDArray[np.integer], starts: NDArray[np.integer]) -> bool:
         """Whether these are the same places."""
         return bool(_same(self.starts, starts) and _same(self.rows, rows))
 
@@ -94,6 +94,24 @@ class SparseMatrix:
         p = self.pattern
         indices, starts = p.rows.astype(np.int32), p.starts.astype(np.int32)
         return sparse.csc_matrix((self.data, indices, starts), shape=p.shape)
+
+
+class LowRankSum(SparseMatrix):
+    """A matrix of a pattern, its own entries, and a product of low rank beside them:
+    entries + W C⁻¹ Wᵀ.
+
+    Args:
+        entries: (n, n).
+        wide: W (n, r).
+        middle: C (r, r), symmetric.
+    """
+
+    __slots__ = ("middle", "wide")
+
+    def __init__(self, entries: SparseMatrix, wide: FloatArray, middle: FloatArray) -> None:
+        super().__init__(entries.pattern, entries.data)
+        self.wide = wide
+        self.middle = middle
 
 
 def from_scipy(matrix: sparse.sparray | sparse.spmatrix) -> SparseMatrix:

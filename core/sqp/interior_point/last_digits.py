@@ -11,7 +11,7 @@ from numba import njit
 
 from ..active_steps import ActiveSteps
 from ..algebra.linear import SaddlePatterns
-from ..algebra.matrices import SparseMatrix
+from ..algebra.matrices import LowRankSum, SparseMatrix
 from ..best import Best
 from ..problem.hessians import HessianSource
 from ..problem.scaled import ScaledProblem
@@ -56,6 +56,8 @@ class LastDigits:
         Args:
             H: (n, n) there.
         """
+        if isinstance(H, LowRankSum):
+            return None  # its steps are not Newton's
         if undecided(place.at, box) > _LEAST_UNDECIDED + _SHARE_UNDECIDED * len(box.held):
             return None
         return self._steps.solution(place.point, place.at.y, shown_by(place.at, box), H)

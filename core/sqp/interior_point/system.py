@@ -18,7 +18,7 @@ from numba import njit
 from ...arrays import BoolArray, FloatArray
 from ..algebra.ldl import Factors, factorise
 from ..algebra.linear import EntryIndices, SaddleMatrices, SaddlePattern, refined
-from ..algebra.matrices import SparseMatrix, Sparsity
+from ..algebra.matrices import LowRankSum, SparseMatrix, Sparsity
 from .direction import FirstDerivatives, barrier_slopes, step_from
 from .iterate import InteriorIterate, InteriorLimits
 
@@ -38,6 +38,23 @@ class SystemWeights(NamedTuple):
     sigma: FloatArray
     units: FloatArray
     exact: FloatArray
+
+
+class LowRank(NamedTuple):
+    """What of the Hessian is beside the factorised matrix, W C⁻¹ Wᵀ (Woodbury's formula).
+
+    Args:
+        wide: W (n + m, r).
+        solved: (n + m, r) solutions of the factorised system for its columns.
+        inverse: (r, r) of C + Wᵀ K⁻¹ W.
+    """
+
+    wide: FloatArray
+    solved: FloatArray
+    inverse: FloatArray
+
+
+_NOTHING = LowRank(*(np.zeros((0, 0)) for _ in range(3)))
 
 
 class BarrierSystem:
@@ -81,10 +98,23 @@ class BarrierSystem:
     def factorise_weighted(self, H: SparseMatrix, A: SparseMatrix, weights: SystemWeights) -> int:
         """The same with weights as given."""
         self.weights = weights
+        self._beside = _NOTHING
         factors, places = self._pattern.factors, self._pattern.places
-        return int(
+        positive = int(
             _factorised(self._matrices, H.data, A.data, self._held, factors, places, weights)
         )
+        if isinstance(H, LowRankSum) and positive >= 0:
+            self._beside = self._of_low_rank(H)
+        return positive
+
+    def _of_low_rank(self, H: LowRankSum) -> LowRank:
+        """What takes H's part of low rank into account, by Woodbury's formula."""
+        wide = np.zeros((len(self.weights.exact), H.wide.shape[1]))
+        wide[: len(H.wide)] = np.where(self._held[:, None], 0.0, H.wide)
+        solved = np.empty_like(wide)
+        _columns(self._matrices, self._pattern.factors, self.weights.exact, wide, solved)
+        inverse = np.asarray(np.linalg.inv(H.middle + wide.T @ solved), np.float64)
+        return LowRank(wide, solved, inverse)
 
     def solve(
         self, slope: FloatArray, rest: FloatArray, box: InteriorLimits
@@ -96,7 +126,8 @@ class BarrierSystem:
             slope: (n + m,) of the barrier's Lagrangian.
             rest: (m,) c − s.
         """
-        found, left = _solved(self._matrices, self._pattern.factors, self.weights, slope, rest, box)
+        factors, beside = self._pattern.factors, self._beside
+        found, left = _solved(self._matrices, factors, self.weights, beside, slope, rest, box)
         return found, float(left)
 
     def step(
@@ -117,7 +148,8 @@ class BarrierSystem:
         """
         factors = self._pattern.factors
         *parts, along, left = _stepped(
-            self._matrices, factors, self.weights, at, box, derivatives, slopes, rest, mu
+            *(self._matrices, factors, self.weights, self._beside),
+            *(at, box, derivatives, slopes, rest, mu),
         )
         return InteriorIterate(*parts), float(along), float(left)
 
@@ -199,10 +231,42 @@ def _factorised(
 
 
 @njit(cache=True, error_model="numpy")
+def _columns(
+    matrices: SaddleMatrices,
+    factors: Factors,
+    exact: FloatArray,
+    wide: FloatArray,
+    solved: FloatArray,
+) -> None:
+    """Solutions for each column of ``wide`` (n + m, r), written to ``solved``."""
+    found = np.zeros(len(wide))
+    for k in range(wide.shape[1]):
+        refined(matrices, factors, exact, wide[:, k].copy(), found, _EXACT)
+        solved[:, k] = found
+
+
+@njit(cache=True, error_model="numpy")
+def _corrected(beside: LowRank, found: FloatArray) -> None:
+    """From the solution without what is of low rank to that with it, in place."""
+    rank = beside.wide.shape[1]
+    along, share = np.zeros(rank), np.zeros(rank)
+    for j in range(len(found) if rank else 0):
+        for k in range(rank):
+            along[k] += beside.wide[j, k] * found[j]
+    for k in range(rank):
+        for p in range(rank):
+            share[k] += beside.inverse[k, p] * along[p]
+    for j in range(len(found) if rank else 0):
+        for k in range(rank):
+            found[j] -= beside.solved[j, k] * share[k]
+
+
+@njit(cache=True, error_model="numpy")
 def _solved(
     matrices: SaddleMatrices,
     factors: Factors,
     weights: SystemWeights,
+    beside: LowRank,
     slope: FloatArray,
     rest: FloatArray,
     box: InteriorLimits,
@@ -211,6 +275,7 @@ def _solved(
     right = right_side(weights, slope, rest, box)
     found = np.zeros_like(right)
     left = refined(matrices, factors, weights.exact, right, found, _EXACT)
+    _corrected(beside, found)
     n = len(right) - len(rest)
     for i in range(len(rest)):
         found[n + i] *= weights.units[i]
@@ -222,6 +287,7 @@ def _stepped(
     matrices: SaddleMatrices,
     factors: Factors,
     weights: SystemWeights,
+    beside: LowRank,
     at: InteriorIterate,
     box: InteriorLimits,
     d: FirstDerivatives,
@@ -231,6 +297,6 @@ def _stepped(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float]:
     """See `BarrierSystem.step`."""
     slope = barrier_slopes(slopes, at, box, mu)
-    found, left = _solved(matrices, factors, weights, slope, rest, box)
+    found, left = _solved(matrices, factors, weights, beside, slope, rest, box)
     step, along = step_from(found, weights.sigma, slope, rest, d, at, box, mu)
     return step.v, step.y, step.low, step.high, along, left

@@ -12,6 +12,7 @@ from ..algebra.matrices import SparseMatrix
 from .differences import Differences
 from .errors import NlpError
 from .evaluation import Evaluation, Point
+from .limited_memory import LimitedMemory
 from .nlp import NLP
 from .optimality import lagrangian_slope
 
@@ -31,6 +32,8 @@ class HessianKind(StrEnum):
     """JᵀJ of the residuals; the constraints' curvature is left out."""
     BFGS = "bfgs"
     """Powell's damped BFGS, dense (Nocedal and Wright, procedure 18.2)."""
+    LBFGS = "lbfgs"
+    """BFGS of the last steps alone, for the interior point: a few columns beside a diagonal."""
     DIFFERENCES = "differences"
     """Differences of the Lagrangian's gradient, columns that do not meet taken together (Curtis,
     Powell and Reid 1974): sparse, and as good as exact, at some gradients an iteration."""
@@ -70,7 +73,7 @@ def choose_kind(nlp: NLP, wanted: HessianKind | str | None) -> HessianKind:
             return HessianKind.GAUSS_NEWTON
         if nlp.hessian is not None:
             return HessianKind.EXACT
-        return HessianKind.BFGS if nlp.n <= LARGEST_DENSE else HessianKind.DIFFERENCES
+        return full_or_sparse(nlp)
     try:
         kind = HessianKind(wanted)
     except ValueError:
@@ -82,6 +85,11 @@ def choose_kind(nlp: NLP, wanted: HessianKind | str | None) -> HessianKind:
     return kind
 
 
+def full_or_sparse(nlp: NLP) -> HessianKind:
+    """The kind for a problem of which nothing but first derivatives is known."""
+    return HessianKind.BFGS if nlp.n <= LARGEST_DENSE else HessianKind.DIFFERENCES
+
+
 def make_source(kind: HessianKind, evaluation: Evaluation) -> HessianSource:
     """The source of a kind for one solution."""
     if kind is HessianKind.EXACT:
@@ -90,6 +98,8 @@ def make_source(kind: HessianKind, evaluation: Evaluation) -> HessianSource:
         return _GaussNewton(evaluation)
     if kind is HessianKind.BFGS:
         return _Bfgs(evaluation)
+    if kind is HessianKind.LBFGS:
+        return LimitedMemory(evaluation.nlp.n)
     return Differences(evaluation)
 
 

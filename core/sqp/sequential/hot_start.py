@@ -17,7 +17,7 @@ from ..qp.active_set import WorkingSet
 from ..result import Result
 from ..workspace import Workspace
 
-_STEPS, _SYSTEMS, _REACH, _GAIN = 6, 8, 2.0, 0.5
+_STEPS, _SYSTEMS, _REACH, _GAIN = 8, 8, 2.0, 10.0
 _NO_MULTIPLIER = 1e-8
 
 

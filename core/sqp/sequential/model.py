@@ -259,7 +259,8 @@ class Model:
         """Slope (n,) of the Lagrangian, less what bounds hold."""
         slope = lagrangian_slope(point.g, point.J, y)
         problem = self._problem
-        return slope + bound_multipliers(point.x, slope, problem.x_lower, problem.x_upper)
+        pushed = bound_multipliers(point.x, slope, problem.x_lower, problem.x_upper)
+        return np.asarray(slope + pushed)
 
     def limits(self, x: FloatArray, number: int) -> tuple[FloatArray, FloatArray]:
         """Lower and upper limits (n,) of a step from x: of the bounds and the user's box.

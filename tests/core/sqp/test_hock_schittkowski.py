@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fnmatch import fnmatch
 from itertools import product
 
@@ -121,6 +122,34 @@ def test_the_listed_exceptions_claim_nothing_false(case: str) -> None:
     that residuals are true, and none may call a problem with a solution infeasible or unbounded."""
     _, result = _from_the_published_start(case, 25)
     assert result.status not in (Status.INFEASIBLE, Status.UNBOUNDED)
+
+
+# By limited memory: other local optima, and those that are not reached.
+LIMITED = {
+    "hs16": 3.98206045,
+    "hs20": 40.19873,
+    "hs55": 20 / 3,
+    "hs97": 4.07124636,
+    "hs108": -0.674981429,
+    "hs47": -0.026714182,
+    "hs13": None,
+    "hs101": None,
+}
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_first_derivatives_and_the_last_steps_lead_to_the_optimum(name: str) -> None:
+    stated = PROBLEMS[name]
+    nlp = replace(stated.nlp(), hessian=None)
+    value = LIMITED.get(name, stated.optimum)
+    most = 25 if value is None else 150
+    result = solved(nlp, stated.start, hessian_kind="lbfgs", max_iterations=most)
+    assert result.method.startswith("interior_point")
+    if value is None:
+        assert result.status not in (Status.INFEASIBLE, Status.UNBOUNDED)
+    else:
+        assert result.status is Status.OPTIMAL
+        assert _close(result.objective, value)
 
 
 NEARBY = {
