@@ -15,6 +15,7 @@ from ...robot.kinematics.lean import inner, lean
 from ...robot.model import Robot
 from ..geometry.quintic import basis, bends, slopes
 from ..model.torque import Torque
+from ..path.between_states import step_of
 from ..path.tcp_samples import States
 from ..timing.limits import SegmentLimits
 from ..timing.timed_zones import ROOM
@@ -257,13 +258,15 @@ def _look(
     square, u = x0 + z * (x1 - x0), (x1 - x0) / (2 * h)
     pace = square**0.5
     for j in range(axes):
-        value = slope = bend = 0.0
+        step = step_of(states, s, j, h)
+        value = states.q[s, j] + weight[0, 3] * step
+        slope, bend = weight[1, 3] * step, weight[2, 3] * step
         for n in range(2):
-            p, c = states.q[s + n, j], 3 * n
+            c = 3 * n
             v, a = h * states.dq[s + n, j], h * h * states.ddq[s + n, j]
-            value += weight[0, c] * p + weight[0, c + 1] * v + weight[0, c + 2] * a
-            slope += weight[1, c] * p + weight[1, c + 1] * v + weight[1, c + 2] * a
-            bend += weight[2, c] * p + weight[2, c + 1] * v + weight[2, c + 2] * a
+            value += weight[0, c + 1] * v + weight[0, c + 2] * a
+            slope += weight[1, c + 1] * v + weight[1, c + 2] * a
+            bend += weight[2, c + 1] * v + weight[2, c + 2] * a
         slope, bend = slope / h, bend / (h * h)
         state[0, j], state[1, j] = value, slope * pace
         share[j] = slope * pace / velocity[j]

@@ -5,6 +5,25 @@ from __future__ import annotations
 from ...robot.kinematics.lean import inner
 from .tcp_samples import States
 
+_ROUNDED = 1e-14
+"""rad or m, and share of a joint's value, by which positions may be off: rounding, and what inverse
+kinematics leave."""
+
+
+@inner
+def step_of(states: States, s: int, j: int, length: float) -> float:
+    """How far joint j goes from sample s to the next.
+
+    Where that is a few rounded digits of the positions, the derivatives say it better: of samples a
+    nanometre apart, as in zones of micrometres, what the positions are off would count 1e18 times
+    in the second derivative.
+    """
+    q0, q1 = states.q[s, j], states.q[s + 1, j]
+    rates = 0.5 * (states.dq[s, j] + states.dq[s + 1, j])
+    bend = (states.ddq[s + 1, j] - states.ddq[s, j]) / 12.0
+    step = length * (rates - length * bend)
+    return step if abs(q1 - q0 - step) <= _ROUNDED * (1.0 + abs(q0)) else q1 - q0
+
 
 @inner
 def joint_at(states: States, s: int, j: int, length: float, z: float) -> tuple[float, float, float]:
@@ -13,7 +32,7 @@ def joint_at(states: States, s: int, j: int, length: float, z: float) -> tuple[f
     The quintic in ℓ that meets both samples' derivatives, ``length`` of ℓ apart. Beyond them, where
     z is no share, it is what they let expect.
     """
-    d = states.q[s + 1, j] - states.q[s, j]
+    d = step_of(states, s, j, length)
     v0, v1 = states.dq[s, j], states.dq[s + 1, j]
     a0, a1 = states.ddq[s, j], states.ddq[s + 1, j]
     # What they are weighed by is the same for all joints: compilers take it out of loops.

@@ -56,3 +56,26 @@ def test_no_acceleration_passes_its_limit_unseen(first, last, x0, x1) -> None:
         assert row[0] == AXES + 2
     else:
         assert most[0] <= 1.005
+
+
+@given(
+    q=st.floats(-3.0, 3.0),
+    bend=st.floats(1e4, 1e6),
+    length=st.floats(3e-10, 1e-5),
+    z=st.floats(0.0, 1.0),
+)
+def test_rounded_positions_make_no_acceleration(q, bend, length, z) -> None:
+    """Samples a nanometre apart, as in zones of micrometres: their positions are a few digits."""
+    slope, end = 0.7, length
+    last = (q + slope * end + 0.5 * bend * end**2, slope + bend * end, bend)
+    states = one_interval((q, slope, bend), last)
+    _, rate, found = joint_at(states, 0, 0, length, z)
+    assert found == pytest.approx(bend, rel=1e-3)
+    assert rate == pytest.approx(slope + z * bend * end, rel=1e-6)
+    zero, most, row = np.zeros(1, dtype=np.int64), np.zeros(1), np.full(1, -1)
+    free = np.full((1, AXES + 2), np.inf)
+    held = free.copy()
+    held[0, 0] = bend
+    given_ = np.array([length]), np.ones(2), zero, zero, zero, free, held, most, row
+    _shares(CHAIN, states, *given_)
+    assert most[0] < 1.004
