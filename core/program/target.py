@@ -46,16 +46,21 @@ class PoseTarget:
         external: external axes, rad or m, in the robot's order; axes beyond the tuple keep
             their value.
         name: name of the datum in the source, kept for the writer.
+        arm_angle: rad, of an arm with seven axes (`core/robot/arm_angle.py`); None where the
+            program states none: the third axis keeps its value.
     """
 
     pose: Pose
     configuration: Configuration | None = None
     external: tuple[float, ...] = ()
     name: str | None = None
+    arm_angle: float | None = None
 
     def __post_init__(self) -> None:
         if not all(map(math.isfinite, self.external)):
             raise InputError(f"external axis values must be finite, not {self.external}")
+        if self.arm_angle is not None and not math.isfinite(self.arm_angle):
+            raise InputError(f"an arm angle must be finite, not {self.arm_angle}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -48,6 +48,8 @@ An origin starts with one of published, identified, measured, computed, assumed,
     order = ["A1", "A2", "A3", "A5", "A4", "A6"]   # optional: the joints from base to flange, where
                                          # the controller counts them otherwise
 
+    arm_angle_reference = [0, 1, 0]      # optional, of seven axes: what arm angles of targets count
+                                         # from, in the base's frame
     [flange]                             # in the frame behind the last joint
     xyz_mm = [200, 0, 0]
     rpy_deg = [0, 90, 0]
@@ -98,7 +100,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..files.tables import ANGLE, LENGTH, TomlTable
-from ..spatial.pose import IDENTITY, Pose
+from ..spatial.pose import IDENTITY, Pose, Vector3
 from ..spatial.rotation import matrix_from_rotation_vector
 from .inertia import Inertia
 from .joint import CoupledRange, Follower, Joint, JointKind, held_joint
@@ -166,6 +168,7 @@ def _robot(table: TomlTable) -> Robot:
     shapes = tuple(shape for of_row, _ in made for shape in of_row)
     odd = tuple(doubt for _, doubts in made for doubt in doubts)
     needed = ["geometry", "range", "velocity", "acceleration"]
+    needed += ["arm_angle"] if table.has("arm_angle_reference") else []
     needed += ["effort"] if any(joint.effort for joint in joints) else []
     needed += ["inertia"] if links else []
     needed += ["shape"] if shapes else []
@@ -181,8 +184,18 @@ def _robot(table: TomlTable) -> Robot:
         doubts=(*(table.texts("doubts") if table.has("doubts") else ()), *odd),
         may_touch=tuple(_touching(row, len(joints)) for row in table.listed_tables("may_touch")),
         order=order,
+        arm_angle_reference=_reference(table),
         coupled_ranges=tuple(map(_coupled, table.listed_tables("coupled_range"))),
     )
+
+
+def _reference(table: TomlTable) -> Vector3 | None:
+    if not table.has("arm_angle_reference"):
+        return None
+    x, y, z = table.numbers("arm_angle_reference", 3)
+    if not (x or y or z):
+        raise table.error("arm_angle_reference", "has no direction")
+    return (x, y, z)
 
 
 def _spread(table: TomlTable) -> dict[str, float]:

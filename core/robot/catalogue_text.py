@@ -34,6 +34,8 @@ def robot_text(robot: Robot) -> str:
     head |= {} if robot.payload is None else {"payload_kg": robot.payload}
     head |= {"doubts": list(robot.doubts)} if robot.doubts else {}
     head |= {"order": list(robot.order)} if robot.order else {}
+    if robot.arm_angle_reference is not None:
+        head["arm_angle_reference"] = list(robot.arm_angle_reference)
     lines = list(_pairs(head))
     origins = {**dict.fromkeys(_stated(robot), _UNSAID), **robot.origins}
     lines += _table("[origin]", origins)
@@ -79,6 +81,8 @@ def _stated(robot: Robot) -> Iterator[str]:
         yield "inertia"
     if robot.shapes:
         yield "shape"
+    if robot.arm_angle_reference is not None:
+        yield "arm_angle"
 
 
 def _table(heading: str, entries: Mapping[str, Any]) -> list[str]:

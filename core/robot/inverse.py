@@ -22,6 +22,8 @@ from .kinematics.scara import solve_scara
 from .kinematics.spherical_wrist import solve_spherical_wrist
 from .kinematics.tracking import track
 from .kinematics.ur_geometry import solve_parallel_axes
+from .seven_axes.arm_angle import ArmAngle
+from .seven_axes.self_motion import self_motions, with_arm_angle
 
 FULL_TURN = 2 * math.pi
 LIMIT_SLACK = 1e-9
@@ -33,6 +35,8 @@ SINGULAR = 1e-6
 """m (shoulder) or sine (elbow, wrist) below which a solution counts as singular."""
 SAME = 1e-6
 """rad or m within which two solutions are one."""
+_APART = 6
+"""° between arm angles of samples on a curve, above which there is a gap."""
 SOLVERS = {
     Family.SPHERICAL_WRIST: solve_spherical_wrist,
     Family.PARALLEL_AXES: solve_parallel_axes,
@@ -121,6 +125,18 @@ class Ranges(NamedTuple):
         )
 
 
+class WantedAngle(NamedTuple):
+    """The arm angle that configurations are to have.
+
+    Args:
+        measured: what it is measured by.
+        value: rad.
+    """
+
+    measured: ArmAngle
+    value: float
+
+
 def solve(
     chain: Chain,
     joints: Sequence[Joint],
@@ -129,6 +145,7 @@ def solve(
     known: Recognised | None,
     R: FloatArray,
     p: FloatArray,
+    angle: WantedAngle | None = None,
 ) -> tuple[InverseSolution, ...]:
     """All solutions within limits for a flange pose in the base's frame.
 
@@ -140,16 +157,78 @@ def solve(
         known: the closed form that fits the chain; None to search numerically, where not every
             solution need be found, and of an arm with more than six joints only samples can be.
         R, p: (3, 3), (3,) m, the pose.
+        angle: of an arm with seven axes; None if any will do.
 
     Raises:
         UnreachableError: there is none.
     """
+    if angle is not None:
+        return _with_arm_angle(chain, joints, ranges, coupled, angle, R, p)
     if known is None:
         candidates, least = _searched(chain, ranges, R, p)
     else:
         candidates, least = _closed_form(chain, known, R, p)
     if not candidates:
         raise UnreachableError(_out_of_reach(known, least), least)
+    return _within_limits(joints, ranges, coupled, candidates)
+
+
+def _with_arm_angle(
+    chain: Chain,
+    joints: Sequence[Joint],
+    ranges: Ranges,
+    coupled: Sequence[CoupledRange],
+    angle: WantedAngle,
+    R: FloatArray,
+    p: FloatArray,
+) -> tuple[InverseSolution, ...]:
+    """All solutions with an arm angle; arguments and errors as of `solve`."""
+    seeds, least = solve_numerically(chain, ranges.lower, ranges.upper, R, p)
+    if not seeds:
+        raise UnreachableError(_out_of_reach(None, least), least)
+    curves = self_motions(chain, angle.measured, seeds, R, p)
+    found = with_arm_angle(chain, angle.measured, curves, R, p, angle.value)
+    try:
+        if not found:
+            raise UnreachableError("the arm cannot take the pose", tilted=True)
+        candidates = [UnboundedSolution(q, None, frozenset(), False) for q in found]
+        return _within_limits(joints, ranges, coupled, candidates)
+    except UnreachableError as error:
+        degrees = math.degrees(math.remainder(angle.value, FULL_TURN))
+        fits = [_settled(ranges, curve.q)[1] for curve in curves]
+        some = np.concatenate([c.angle[one] for c, one in zip(curves, fits, strict=True)])
+        raise UnreachableError(
+            f"with an arm angle of {degrees:.4g}° {error.message}; {_angles_that_do(some)}",
+            tilted=error.cause is not FaultCause.LIMIT,
+        ) from None
+
+
+def _angles_that_do(angles: FloatArray) -> str:
+    """Which arm angles a pose can be taken with, of many (M,) rad on its curves."""
+    if not len(angles):
+        return "no arm angle will do within the joints' ranges: move the target"
+    whole = np.unique(np.round(np.degrees(angles)).astype(int) % 360)
+    gaps = np.flatnonzero(np.diff(whole, append=whole[0] + 360) > _APART)
+    if not len(gaps):
+        return "with another posture all arm angles will do"
+    firsts = whole[(gaps + 1) % len(whole)]
+    lasts = whole[np.roll(gaps, -1)]
+    runs = sorted((_signed(int(a)), _signed(int(b))) for a, b in zip(firsts, lasts, strict=True))
+    said = [f"{a}° {'over 180° ' if b < a else ''}to {b}°" for a, b in runs]
+    return f"arm angles that will do there are {' and '.join(map(str, said))}"
+
+
+def _signed(degrees: int) -> int:
+    return (degrees + 180) % 360 - 180
+
+
+def _within_limits(
+    joints: Sequence[Joint],
+    ranges: Ranges,
+    coupled: Sequence[CoupledRange],
+    candidates: list[UnboundedSolution],
+) -> tuple[InverseSolution, ...]:
+    """The candidates that fit into the ranges, brought into them; errors as of `solve`."""
     settled, inside = _settled(ranges, np.array([candidate.q for candidate in candidates]))
     solutions: list[InverseSolution] = []
     names = [joint.name for joint in joints]

@@ -18,7 +18,7 @@ from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, Turn, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
-from .inverse import LIMIT_SLACK, InverseSolution, Ranges, equivalent_turns, solve
+from .inverse import LIMIT_SLACK, InverseSolution, Ranges, WantedAngle, equivalent_turns, solve
 from .joint import (
     COLUMNS,
     CoupledRange,
@@ -32,7 +32,8 @@ from .joint import (
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
-from .kinematics.chain_kernels import jacobians, poses
+from .kinematics.chain_kernels import jacobian, jacobians, poses
+from .seven_axes.arm_angle import AXES, ArmAngle, arm_angle_of, measure
 from .shape import LinkShape, TouchingLinks
 
 STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)
@@ -63,6 +64,8 @@ class Robot:
         may_touch: pairs of the arm's own links that may touch.
         order: names of the joints from base to flange, if not those of ``joints``.
         coupled_ranges: ranges of sums of joints' values.
+        arm_angle_reference: of an arm with seven axes whose targets state an arm angle, the
+            direction that it counts from, in the base's frame.
 
     Raises:
         InputError: two axes share a name, the links are not one a joint, a shape or a pair that
@@ -84,6 +87,7 @@ class Robot:
     may_touch: tuple[TouchingLinks, ...] = ()
     order: tuple[str, ...] = ()
     coupled_ranges: tuple[CoupledRange, ...] = ()
+    arm_angle_reference: Vector3 | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origins", MappingProxyType(dict(self.origins)))
@@ -119,6 +123,8 @@ class Robot:
                 f"robot {self.name}: the order {', '.join(self.order)} is none of its joints"
             )
         turning = [joint.name for joint in self.joints if joint.kind is JointKind.REVOLUTE]
+        if self.arm_angle_reference is not None and len(turning) != AXES:
+            raise InputError(f"robot {self.name}: arms of {AXES} turning axes have an arm angle")
         summed = [name for coupled in self.coupled_ranges for name, _ in coupled.terms]
         if not set(summed) <= set(turning):
             raise InputError(
@@ -334,18 +340,51 @@ class Robot:
         """The closed form of inverse kinematics that fits the arm, None if none does."""
         return recognise(self.arm_chain)
 
+    @cached_property
+    def measured_arm_angle(self) -> ArmAngle | None:
+        """What the arm angle is measured by; None of an arm that counts none."""
+        reference = self.arm_angle_reference
+        if reference is None:
+            return None
+        return arm_angle_of(self.joints, self.along, self.flange, reference)
+
+    def arm_angle(self, q: ArrayLike) -> float | None:
+        """The arm angle, rad, of a configuration (N,); None of an arm that counts none."""
+        return None if self.measured_arm_angle is None else self._arm_angle_at(q, np.empty(0))
+
+    def arm_angle_slope(self, q: ArrayLike) -> FloatArray:
+        """The derivative (n,) of the arm angle with respect to the arm's joints."""
+        slope = np.empty(self.arm_size)
+        self._arm_angle_at(q, slope)
+        return slope
+
+    def _arm_angle_at(self, q: ArrayLike, slope: FloatArray) -> float:
+        assert self.measured_arm_angle is not None
+        _, (rows,) = self._rows(q)
+        R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, self.arm_size))
+        jacobian(self.arm_chain, rows[0, : self.arm_size].copy(), R, p, J)
+        return float(measure(self.measured_arm_angle, R, p, J, slope))
+
     def inverse(
-        self, pose: Pose | FloatArray, external: Sequence[float] = ()
+        self,
+        pose: Pose | FloatArray,
+        external: Sequence[float] = (),
+        arm_angle: float | None = None,
     ) -> tuple[InverseSolution, ...]:
         """All configurations of the arm within limits that bring the flange to a pose.
 
         Args:
             pose: of the flange in the world, as a pose or a matrix (4, 4).
             external: values of all external axes.
+            arm_angle: rad; None if any will do.
 
         Raises:
             UnreachableError: there is none; it says by how much.
+            InputError: an arm angle is asked of an arm that counts none.
         """
+        measured = self.measured_arm_angle
+        if arm_angle is not None and measured is None:
+            raise InputError(f"robot {self.name} has no arm angle")
         if len(external) != len(self.external_axes):
             raise InputError(
                 f"robot {self.name} has {len(self.external_axes)} external axes; "
@@ -363,6 +402,9 @@ class Robot:
             self.recognised,
             R,
             p,
+            WantedAngle(measured, arm_angle)
+            if arm_angle is not None and measured is not None
+            else None,
         )
 
     def turns(self, q: ArrayLike) -> FloatArray:

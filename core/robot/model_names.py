@@ -20,6 +20,8 @@ _BESIDE = re.compile(
 """Words of controllers, mountings, makers and families that are no part of a model's name."""
 _FAMILIES = {"gofa": "crb 15000", "yumi": "irb 14000"}
 """What makers call a family, and the model it is."""
+_MODEL = re.compile(r"\d{5}")
+"""A model of such a family, named beside it: IRB 14050 YuMi."""
 _WORD = re.compile(r"\d+(?:\.\d+)?[a-z]*|[a-z]+")
 _GENERATION = 9.0
 """Up to which a number that is no payload tells a generation: KR 210 R2700-2."""
@@ -35,7 +37,7 @@ def words_of(name: str) -> tuple[str, ...]:
     said = _BESIDE.sub(" ", re.sub(r"[#_/\-]", " ", said))
     said = said.replace("lean id", "lid").replace("leanid", "lid")  # as controllers write it
     for family, model in _FAMILIES.items():
-        said = said.replace(family, " " if model.split()[1] in said else model)
+        said = said.replace(family, " " if _MODEL.search(said) else model)
     said = re.sub(r"(?<=\d)r(?=\d{3,4})", " r ", said)
     said = re.sub(r"\b(r ?\d{3,4})(?=[a-z]+)", r"\1 ", said)
     said = re.sub(r"(?<=\d)(kg|mm?)\b", " ", said)

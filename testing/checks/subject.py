@@ -331,12 +331,16 @@ class Subject:
     ) -> Program:
         """The program in ``sources``, read from files as a user would.
 
-        Of an arm with an axis that slides no text says whether its values are mm or degrees: the
-        reader gets the robot then, and none otherwise.
+        Of an arm with an axis that slides no text says whether its values are mm or degrees, and of
+        one with an arm angle none which axis is the seventh: the reader gets the robot then, and
+        none otherwise.
         """
-        slides = robot is not None and any(j.kind is JointKind.PRISMATIC for j in robot.joints)
+        asked = robot is not None and (
+            robot.arm_angle_reference is not None
+            or any(j.kind is JointKind.PRISMATIC for j in robot.joints)
+        )
         texts = {file: text.encode() for file, text in sources.items()}
-        return self.read_bytes(texts, robot if slides else None, vendor)
+        return self.read_bytes(texts, robot if asked else None, vendor)
 
     def read_bytes(
         self, sources: dict[str, bytes], robot: Robot | None = None, vendor: Vendor | None = None

@@ -43,7 +43,7 @@ def test_each_arm_stands_where_it_should(vendor) -> None:
         while np.any(np.abs(q - np.clip(q, robot.limits.lower, robot.limits.upper)) > 0.0):
             q = allowed(robot, rng.uniform(robot.limits.lower, robot.limits.upper))
         pose = robot.flange_pose(q)
-        found = [solution.q for solution in robot.inverse(pose)]
+        found = [one.q for one in robot.inverse(pose, arm_angle=robot.arm_angle(q))]
         apart = [np.abs(np.remainder(x - q + np.pi, 2 * np.pi) - np.pi).max() for x in found]
         assert min(apart) < 1e-6, robot.name
         for x in found:
@@ -104,6 +104,12 @@ CALLED = {
     "UR5 CB3": "ur/ur5",
     "IRB 6700-150/3.20 LeanID": "abb/irb6700-150-320-lid",
     "IRB 5710-90/2.30 Lean ID": "abb/irb5710-90-230-lid",
+    "yumi left": "abb/irb14000-05-056-left",
+    "YuMi right": "abb/irb14000-05-056-right",
+    "IRB 14000-0.5/0.5 L": "abb/irb14000-05-056-left",
+    "ROB_R_14000_05_05": "abb/irb14000-05-056-right",
+    "IRB 14050": "abb/irb14050-05-056",
+    "IRB 14050-0.5/0.5 YuMi": "abb/irb14050-05-056",
 }
 
 
@@ -111,6 +117,12 @@ CALLED = {
 def test_names_that_people_and_controllers_write(name) -> None:
     assert installed().robot_called(name) == CALLED[name]
     assert find_robot(name).name == CALLED[name]
+
+
+@pytest.mark.parametrize("name", ["YuMi", "IRB 14000-0.5/0.5", "14000"])
+def test_which_arm_of_two_has_to_be_said(name) -> None:
+    with pytest.raises(InputError, match=r"irb14000-05-056-left .*irb14000-05-056-right"):
+        find_robot(name)
 
 
 @pytest.mark.parametrize("name", ["irb6640-180-254", "IRB 2400-10/1.60", "irb120-3/0.7"])

@@ -29,9 +29,9 @@ from ...core.errors import InputError
 from ...core.recording import Recording, comments, listed
 from ...core.source.text.names import Names
 from ...core.source.write.options import OpaqueStyle, StructureStyle
+from .values.records import ARM_AXES
 from .write.formatting import NAME_RULES
 from .write.numbers import number
-from .write.operands import ARM_AXES
 from .write.options import RapidOptions
 from .write.writer import ENTRY, SUFFIX, TextAround, module_name, write
 

@@ -227,6 +227,7 @@ class Derivatives:
                 q_bar,
                 pose_bar,
                 J[k, 1],
+                route.ends.q[k, 1],
                 None if back is None else back[k],
                 position,
                 turn,
@@ -261,6 +262,7 @@ class Derivatives:
         q_bar: FloatArray,
         pose_bar: FloatArray,
         J: FloatArray,
+        q: FloatArray,
         back: FloatArray | None,
         position: FloatArray,
         turn: FloatArray,
@@ -278,7 +280,11 @@ class Derivatives:
             q_bar = q_bar + J.T @ pose_bar
             joints[index, :named] += q_bar[:named]
         else:
-            w = self._solved(index, back, q_bar[route.solved])
+            angled = target.arm_angle is not None
+            if angled:
+                w = self._led(index, J, q, q_bar)
+            else:
+                w = self._solved(index, back, q_bar[route.solved])
             pose_bar = pose_bar + w
             held = q_bar.copy()
             held[route.prescribed] -= J[:, route.prescribed].T @ w
@@ -287,9 +293,18 @@ class Derivatives:
             joints[index, arm:named] += held[arm:named]
             q_bar = held
             redundant = route.prescribed[route.prescribed < arm]
-            passed[redundant] = q_bar[redundant]
+            if not angled:
+                passed[redundant] = q_bar[redundant]
         passed[named:] = q_bar[named:]
         return passed
+
+    def _led(self, index: int, J: FloatArray, q: FloatArray, q_bar: FloatArray) -> FloatArray:
+        """As `_solved`, where the target states an arm angle, which stays."""
+        arm = self._robot.arm_size
+        whole = np.vstack([J[:, :arm], self._robot.arm_angle_slope(q)])
+        if not np.linalg.cond(whole) < SINGULAR_TARGET:
+            return self._solved(index, np.full((6, 6), np.nan), q_bar)
+        return np.asarray(np.linalg.solve(whole.T, q_bar[:arm])[:6])
 
     def _solved(self, index: int, back: FloatArray | None, q_bar: FloatArray) -> FloatArray:
         """Reverse of inverse kinematics at a move's pose target, by what `_inverses` says of it.

@@ -26,6 +26,7 @@ from ...robot.kinematics.tracking import track
 from ...robot.model import Robot
 from ...robot.posture import posture
 from ...spatial.pose import Pose
+from .arm_angles import followed
 
 Label = Callable[[Robot, FloatArray], Configuration | None]
 
@@ -35,7 +36,7 @@ _TURNED = 2.4
 """rad by which an axis is taken to turn only where the arm takes another posture."""
 _EDGE = 0.01
 """m or rad by which a posture differs clearly from its neighbour."""
-_REDUNDANT = 2
+_THIRD = 2
 """The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
 
 
@@ -72,11 +73,11 @@ class ConfigurationFinder:
         self.tolerated: dict[int, str] = {}
         self.ambiguous: dict[int, str] = {}
         self._label = label
-        redundant = [_REDUNDANT] if robot.arm_size == 7 else []
+        redundant = [robot.along[_THIRD]] if robot.arm_size == 7 else []
         arm = range(robot.arm_size)
         self.solved = np.array([j for j in arm if j not in redundant], dtype=np.int64)
         self.prescribed = np.array([*redundant, *range(len(arm), robot.size)], dtype=np.int64)
-        self.redundant = bool(redundant)
+        self.redundant = redundant[0] if redundant else None
         self._full_turn = np.array(
             [2 * np.pi if j.kind is JointKind.REVOLUTE else 0.0 for j in robot.joints]
         )
@@ -122,7 +123,7 @@ class ConfigurationFinder:
         """The configuration of a joint move's pose target.
 
         Of the solutions with the programmed configuration, the one nearest to ``before``. A
-        seven-axis arm keeps its third axis.
+        seven-axis arm keeps its third axis where the target states no arm angle.
 
         Raises:
             MotionError: the pose is out of reach (with the third axis kept), or contradicts the
@@ -130,6 +131,23 @@ class ConfigurationFinder:
         """
         wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
         return self._pick(move, index, wanted, self._options(move, index, before), before)
+
+    def led(self, move: Move, index: int, before: FloatArray) -> FloatArray:
+        """Where (N,) a move of the TCP ends whose target states an arm angle: the arm goes on in
+        its posture, or else takes the nearest.
+
+        Raises:
+            MotionError: it cannot take the pose with that arm angle.
+        """
+        target = move.target
+        assert isinstance(target, PoseTarget) and target.arm_angle is not None
+        q = self.external(target.external, before)
+        if self._robot.measured_arm_angle is not None:
+            flange = self.flange(move, target.pose, q)
+            reached = followed(self._robot, flange, target.arm_angle, q)
+            if reached is not None:
+                return reached
+        return self.choose(replace(move, target=replace(target, configuration=None)), index, before)
 
     def starts(self, move: Move, index: int) -> FloatArray:
         """Configurations (K, N) in which the robot may stand at a move's pose target.
@@ -167,15 +185,19 @@ class ConfigurationFinder:
         q = self.external(target.external, before)
         arm = self._robot.arm_size
         flange = self.flange(move, target.pose, q)
+        external = tuple(map(float, q[arm:]))
         try:
-            found = [s.q for s in self._robot.inverse(flange, tuple(map(float, q[arm:])))]
+            found = [s.q for s in self._robot.inverse(flange, external, target.arm_angle)]
         except UnreachableError as error:
             why = f"target cannot be reached: {error}"
             raise located(move, index, why, error.cause) from error
-        if self.redundant:
-            turned = self._with_third_kept(found, flange, q)
+        except InputError as error:
+            raise located(move, index, str(error)) from error
+        third = self.redundant
+        if third is not None and target.arm_angle is None:
+            turned = self._with_third_kept(found, flange, q, third)
             if not turned:
-                name, value = self._robot.axis_names[_REDUNDANT], np.degrees(q[_REDUNDANT])
+                name, value = self._robot.axis_names[third], np.degrees(q[third])
                 raise located(
                     move,
                     index,
@@ -192,7 +214,7 @@ class ConfigurationFinder:
         return options
 
     def _with_third_kept(
-        self, samples: Sequence[FloatArray], flange: Pose, q: FloatArray
+        self, samples: Sequence[FloatArray], flange: Pose, q: FloatArray, third: int
     ) -> list[FloatArray]:
         """Configurations (n,) of a seven-axis arm at a pose, within limits, third axis as in q.
 
@@ -200,6 +222,7 @@ class ConfigurationFinder:
             samples: some of the arm's configurations at the pose.
             flange: in the world.
             q: (N,), the arm's present configuration and the target's external axes.
+            third: index of the third axis.
         """
         arm = self._robot.arm_size
         matrix = flange.matrix()
@@ -208,11 +231,11 @@ class ConfigurationFinder:
         for sample in (q[:arm], *samples):
             guess = q.copy()
             guess[:arm] = sample
-            guess[_REDUNDANT] = q[_REDUNDANT]
+            guess[third] = q[third]
             converged, _, _ = track(self._robot.chain, guess, R, p, self.solved, guess)
             if converged:
                 turns = self._robot.turns(guess[:arm])
-                kept += [t for t in turns if abs(t[_REDUNDANT] - q[_REDUNDANT]) < _SAME]
+                kept += [t for t in turns if abs(t[third] - q[third]) < _SAME]
         return kept
 
     def _nearest_turns(self, q: FloatArray, before: FloatArray) -> list[FloatArray]:
@@ -240,7 +263,7 @@ class ConfigurationFinder:
         if wanted is None:
             return np.asarray(options[np.argmin(distance)])
         labels = [self._label(self._robot, q) for q in options]
-        if self.redundant and all(name is None for name in labels):
+        if self.redundant is not None and all(name is None for name in labels):
             return np.asarray(options[np.argmin(distance)])
         admitted = [name is not None and wanted.admits(name) for name in labels]
         misses = np.where(admitted, self._misses(wanted, options), math.inf)
@@ -362,9 +385,9 @@ class ConfigurationFinder:
         if not isinstance(move.target, PoseTarget):
             return None
         q = self.external(move.target.external, near)
-        external = tuple(map(float, q[self._robot.arm_size :]))
+        external, flange = tuple(map(float, q[self._robot.arm_size :])), move.target.pose
         try:
-            self._robot.inverse(self.flange(move, move.target.pose, q), external)
+            self._robot.inverse(self.flange(move, flange, q), external, move.target.arm_angle)
         except UnreachableError as error:
             return error
         return None

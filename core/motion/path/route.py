@@ -55,6 +55,10 @@ _STRAIGHT = (
     "the three points of the arc lie on a line: it is driven as the line. Some controllers stop "
     "there: use a linear move"
 )
+_THIRD_EVENLY = (
+    "assumed: the arm's third axis turns evenly along moves of the TCP, from where it stands to "
+    "where the target's arm angle has it; how the controller leads it there is not published"
+)
 _NOWHERE = 1e-6
 """Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
 and a move of nothing would be a stop more."""
@@ -85,6 +89,7 @@ class _Legs:
     Args:
         at_start: index of the move whose target is taken for the start; None if that is known.
         straight: indices of arcs whose points lie on a line.
+        led: indices of moves of the TCP to an arm angle.
     """
 
     at_start: int | None = None
@@ -92,6 +97,7 @@ class _Legs:
     chains: list[Chain] = field(default_factory=list)
     moves: list[int] = field(default_factory=list)
     straight: list[int] = field(default_factory=list)
+    led: list[int] = field(default_factory=list)
 
 
 class RouteFinder:
@@ -241,7 +247,11 @@ class RouteFinder:
                 chain = self.chain(move.tool, move.work_object)
             except InputError as error:
                 raise located(move, i, str(error)) from error
-            if not stages or stages[-1].chain is not chain:
+            if (
+                not stages
+                or stages[-1].chain is not chain
+                or _turns_third(moves[stages[-1].moves[-1]])
+            ):
                 stages.append(MoveGroup(chain, move.tool, move.work_object, []))
             stages[-1].moves.append(i)
         return stages
@@ -292,7 +302,11 @@ class RouteFinder:
                     known[k + 1] = self._targets.joints(move.target, known[k])
                     pose(stage.chain, known[k + 1], rotation[k + 1], position[k + 1])
                 else:
-                    known[k + 1] = self._targets.external(move.target.external, known[k])
+                    if kind[k] != JOINT_SEGMENT and move.target.arm_angle is not None:
+                        known[k + 1] = self._targets.led(move, i, known[k])
+                        legs.led.append(i)
+                    else:
+                        known[k + 1] = self._targets.external(move.target.external, known[k])
                     matrix = move.target.pose.matrix()
                     position[k + 1], rotation[k + 1] = matrix[:3, 3], matrix[:3, :3]
             except InputError as error:
@@ -408,6 +422,7 @@ class RouteFinder:
                 notes.append(Note("goes nowhere: it is at its target already", move))
         notes += half_turns(segments, keep, legs.moves)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
+        notes += [Note(_THIRD_EVENLY, move) for move in legs.led[:1]]
         for move, said in self._targets.departures.items():
             target = program.moves[move].target
             assert isinstance(target, PoseTarget)
@@ -429,6 +444,15 @@ class RouteFinder:
             self._targets.prescribed,
             tuple(replace(n, span=n.span or _span(program, n.move)) for n in notes),
         )
+
+
+def _turns_third(move: Move) -> bool:
+    """Whether a move's end tells where the third axis stands, which the moves after it begin from,
+    before it is driven."""
+    target = move.target
+    return (
+        isinstance(move, MoveJ) and isinstance(target, PoseTarget) and target.arm_angle is not None
+    )
 
 
 def _span(program: Program, move: int | None) -> Span | None:

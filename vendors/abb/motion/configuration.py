@@ -12,6 +12,7 @@ from ....core.errors import InputError
 from ....core.program.target import Configuration
 from ....core.robot.model import Robot
 from ....core.robot.posture import posture
+from ..values.records import ARM_AXES
 
 EDGE_ANGLE = 1e-3
 """rad. Programs hold quaternions of five to seven digits, so an axis that was taught at 90° comes
@@ -24,6 +25,10 @@ EDGE_DISTANCE = 1e-3
 _QUADRANT = math.pi / 2
 _ALL = 7
 """The bits of cfx."""
+_POSTURE, _WRIST = 6, 1
+"""Those of shoulder and elbow, and that of axis 5."""
+_GREATEST_OF_SEVEN = 9999
+_USUAL_OF_SEVEN = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +47,8 @@ class AbbConfiguration:
         edges: of a solution's label: which of axes 1, 4, 6 stand on the lower edge of their
             quadrant, so that the quadrant below fits as well.
         undecided: of a solution's label: bits of cfx whose quantity is about zero.
+        seven: whether the arm has seven axes, of which newer controllers write a cfx of up to four
+            digits.
     """
 
     cf1: int
@@ -50,9 +57,10 @@ class AbbConfiguration:
     cfx: int
     edges: tuple[bool, bool, bool] = field(default=(False, False, False), compare=False, repr=False)
     undecided: int = field(default=0, compare=False, repr=False)
+    seven: bool = field(default=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not 0 <= self.cfx <= 7:
+        if not 0 <= self.cfx <= (_GREATEST_OF_SEVEN if self.seven else _ALL):
             raise InputError(f"cfx numbers eight postures from 0 to 7, not {self.cfx}")
 
     def __str__(self) -> str:
@@ -67,7 +75,7 @@ class AbbConfiguration:
     @property
     def hint(self) -> bool:
         """Whether it names no solution: where it leaves all of them open."""
-        return self.undecided == _ALL
+        return self.undecided & _POSTURE == _POSTURE
 
     def admits(self, label: Configuration) -> bool:
         """Whether cfx is the label's, and each quadrant the label's or a neighbour of it.
@@ -97,7 +105,9 @@ class AbbConfiguration:
             raise InputError(f"an ABB configuration cannot be compared with {label}")
         pairs = zip(self._quadrants(), label._quadrants(), strict=True)
         turns = [min(abs(a - b) for a in mine for b in its) for mine, its in pairs]
-        decided = ~(self.undecided | label.undecided)
+        decided = _ALL & ~(self.undecided | label.undecided)
+        if max(self.cfx, label.cfx) > _ALL:
+            decided = 0
         return turns, ((self.cfx ^ label.cfx) & decided).bit_count()
 
     def _quadrants(self) -> list[tuple[int, ...]]:
@@ -107,29 +117,41 @@ class AbbConfiguration:
 
 
 def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
-    """The label of joint values (N,) rad; None for an arm of another number of axes than six.
+    """The label of joint values (N,) rad; None for an arm of another number of axes than six, but
+    for those of ABB with seven.
 
-    cfx is not looked at where the arm has fewer motors, and then one posture, or no spherical wrist
-    (CRB 15000, IRB 5500), where no source says what it counts.
+    Of those cf1, cf4 and cf6 are the quarter turns that axes 1, 4 and 6 are nearest to, and 1 in
+    cfx that axis 5 is negative: so count the robtargets of programs for the IRB 14000
+    (docs/reference/robots.md). The rest of their cfx is not looked at, nor the whole of it where
+    the arm has fewer motors, and then one posture, or no spherical wrist (CRB 15000, IRB 5500),
+    where no source says what it counts.
     """
-    if robot.arm_size != 6:
+    seven = robot.arm_angle_reference is not None
+    if robot.arm_size != ARM_AXES and not seven:
         return None
-    quarters = [float(q[axis]) / _QUADRANT for axis in (0, 3, 5)]
+    shift = 0.5 if seven else 0.0
+    quarters = [float(q[axis]) / _QUADRANT + shift for axis in (0, 3, 5)]
     cf1, cf4, cf6 = (math.floor(quarter + EDGE_ANGLE / _QUADRANT) for quarter in quarters)
     edges = [abs(v - round(v)) * _QUADRANT <= EDGE_ANGLE for v in quarters]
-    at = posture(robot, q)
+    at = None if seven else posture(robot, q)
     bits: tuple[tuple[float, float, int], ...] = ()
+    left_open, usual = _ALL, 0
+    if seven:
+        bits = ((float(q[4]), EDGE_ANGLE, _WRIST),)
+        left_open, usual = _POSTURE, _USUAL_OF_SEVEN
     if at is not None and not robot.has_held:
         bits = (
             (at.shoulder, EDGE_DISTANCE, 4),
             (at.elbow, EDGE_DISTANCE, 2),
-            (at.wrist, EDGE_ANGLE, 1),
+            (at.wrist, EDGE_ANGLE, _WRIST),
         )
+        left_open = 0
     return AbbConfiguration(
         cf1,
         cf4,
         cf6,
-        cfx=sum(bit for value, _, bit in bits if value < 0),
+        cfx=usual + sum(bit for value, _, bit in bits if value < 0),
         edges=(edges[0], edges[1], edges[2]),
-        undecided=sum(bit for value, edge, bit in bits if abs(value) <= edge) if bits else _ALL,
+        undecided=left_open + sum(bit for value, edge, bit in bits if abs(value) <= edge),
+        seven=seven,
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ....core.door import spelt
 from ....core.errors import InputError, SourceError, Span
 from ....core.source.execution.transcript import Notes
-from ..values.records import AXIS_KINDS, PER_METRE, UNUSED_AXIS
+from ..values.records import ARM_AXES, AXIS_KINDS, PER_METRE, SEVENTH, UNUSED_AXIS, arm_axes
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class ExternalAxes:
     ) -> None:
         for kind in kinds or ():
             if kind not in AXIS_KINDS:
-                raise InputError(f"an external axis is 'linear' or 'rotating', not {kind!r}")
+                raise InputError(f"an external axis is one of {AXIS_KINDS}, not {kind!r}")
         self._settings = settings
         self._notes = notes
         self._kinds = kinds
@@ -50,6 +50,24 @@ class ExternalAxes:
         if self._kinds is None or self._kinds:
             return ""
         return f"the robot has no external axes{cell_axis('eax_a', self._robot)}"
+
+    @property
+    def has_seventh(self) -> bool:
+        """Whether eax_a is of the arm itself, which has seven axes."""
+        return arm_axes(self._kinds or ()) > ARM_AXES
+
+    def with_seventh(
+        self, extax: Sequence[float], span: Span, offsets: bool = True
+    ) -> tuple[float | None, tuple[float, ...]]:
+        """What eax_a says of an arm with seven axes (None if nothing), and the external axes.
+
+        Args:
+            extax, span, offsets: as of `values`, and so the errors.
+        """
+        found = self.values(extax, span, offsets)
+        if not self.has_seventh or not found:
+            return None, found
+        return found[0], found[1:]
 
     def values(self, extax: Sequence[float], span: Span, offsets: bool = True) -> tuple[float, ...]:
         """External axes in rad and m, in the robot's order, as far as they are programmed.
@@ -98,8 +116,7 @@ class ExternalAxes:
             raise SourceError(
                 f"external axis {axis} is moved from {stands:g} to {value:g}, and the robot has "
                 f"{len(self._kinds)} external axes{cell_axis(axis, self._robot)}; if the arm has "
-                f"seven joints (IRB 14000 YuMi, IRB 14050), {axis} is one of them, and arms of "
-                "seven joints are not driven by RAPID programs here",
+                "seven axes, name it (IRB 14050, YuMi left, YuMi right): eax_a is one of them",
                 span,
             )
         if value != 0:
@@ -142,10 +159,11 @@ def cell_axis(name: str, robot: Robot | None) -> str:
 
 
 def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
-    """How RAPID counts the robot's external axes, eax_a first; None without a robot to ask."""
+    """How RAPID counts what an extjoint states of the robot, eax_a first; None without a robot."""
     if robot is None:
         return None
     from ....core.robot.joint import JointKind  # late: it takes time
 
     axes = [axis.joint.kind for axis in robot.external_axes]
-    return tuple("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)
+    own = (SEVENTH,) if robot.arm_size == ARM_AXES + 1 else ()
+    return *own, *("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from ....core.errors import Span
@@ -13,14 +13,20 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Tool, WorkObject
 from ....core.source.text.axis_values import axis_values
 from ....core.spatial.pose import Pose
-from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, Record, pose_record
+from ..values.records import (
+    ARM_AXES,
+    EXTERNAL_AXES,
+    MM,
+    UNUSED_AXIS,
+    Record,
+    arm_axes,
+    pose_record,
+)
 from .configuration import AbbConfiguration, label
 
 if TYPE_CHECKING:
     from ....core.arrays import FloatArray
     from ....core.robot.model import Robot
-
-ARM_AXES = 6
 
 
 class Position(PresentPosition):
@@ -64,12 +70,8 @@ class Position(PresentPosition):
         trans, rot = pose_record(pose)
         last, start = self.last, self.start
         at = start if last is None else last.target
-        return (
-            trans,
-            rot,
-            self._configuration(),
-            self._external(() if at is None else at.external),
-        )
+        external = () if at is None else at.external
+        return (trans, rot, self._configuration(), self._extax_at(external, at, self.joints))
 
     def jointtarget(self) -> Record | None:
         """The present joint values as a jointtarget; None if they are not known."""
@@ -86,7 +88,8 @@ class Position(PresentPosition):
         if standing is None:
             return None
         trans, rot = pose_record(standing.pose(tool, frame))
-        return (trans, rot, self._confdata(standing.joints()), self._external(target.external))
+        extax = self._extax_at(target.external, target, standing.joints)
+        return (trans, rot, self._confdata(standing.joints()), extax)
 
     def jointtarget_at(self, target: PoseTarget, tool: Tool, frame: WorkObject) -> Record | None:
         """The jointtarget of a pose; None without a robot.
@@ -113,15 +116,36 @@ class Position(PresentPosition):
         found = None if self.robot is None else label(self.robot, q)
         return (0.0, 0.0, 0.0, 0.0) if found is None else found.record
 
-    def _external(self, values: Sequence[float]) -> Record:
+    def _extax_at(
+        self,
+        external: tuple[float, ...],
+        at: PoseTarget | JointTarget | None,
+        joints: Callable[[], FloatArray | None],
+    ) -> Record:
+        """The extjoint of a robtarget where the robot stands at a target.
+
+        Args:
+            joints: asked for the arm angle where the target states none.
+        """
+        if arm_axes(self._axes) == ARM_AXES:
+            return self._extax(external)
+        angle = at.arm_angle if isinstance(at, PoseTarget) else None
+        if angle is None and self.robot is not None:
+            q = joints()
+            angle = None if q is None else self.robot.arm_angle(q)
+        return self._extax((angle, *external))
+
+    def _extax(self, values: Sequence[float | None]) -> Record:
         shown = [
-            value / MM if kind == "linear" else math.degrees(value)
+            UNUSED_AXIS
+            if value is None
+            else (value / MM if kind == "linear" else math.degrees(value))
             for value, kind in zip(values, self._axes, strict=False)
         ]
         return tuple(shown + [UNUSED_AXIS] * (EXTERNAL_AXES - len(shown)))
 
     def _joint_record(self, q: FloatArray) -> Record:
-        arm = len(q) - len(self._axes)
+        arm = len(q) - len(self._axes)  # the first six of seven
         joints = axis_values(self.robot, q[:arm])[:ARM_AXES]
         robax = tuple(joints + [0.0] * (ARM_AXES - len(joints)))
-        return (robax, self._external([float(v) for v in q[arm:]]))
+        return (robax, self._extax([float(v) for v in q[arm:]]))

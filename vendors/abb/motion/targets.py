@@ -267,12 +267,12 @@ class Converter:
         trans, orient, robconf, extax = value
         rot = self._unit(orient, span)
         configuration = self._configuration(robconf, span) if follow else None
-        external = self.external.values(extax, span)
+        arm_angle, external = self.external.with_seventh(extax, span)
         pose = self._guard(span, lambda: Pose(metres(trans), _quaternion(rot)))
         displacement = self._settings.now.displacement
         if displacement is not None:
             pose = displacement @ pose
-        return PoseTarget(pose, configuration, external, name)
+        return PoseTarget(pose, configuration, external, name, arm_angle)
 
     def joint_target(
         self, value: Value, name: str | None, offsets: bool, span: Span
@@ -288,14 +288,18 @@ class Converter:
             if abs(degrees) >= UNUSED_AXIS:
                 raise SourceError(f"axis {number + 1} of the arm has no value (9E9)", span)
         joints = arm_values(self._robot, robax)
-        external = self.external.values(extax, span, offsets)
-        return self._guard(span, lambda: JointTarget(joints, external, name))
+        seventh, external = self.external.with_seventh(extax, span, offsets)
+        if self.external.has_seventh and seventh is None:
+            raise SourceError("axis 7 of the arm, eax_a, has no value (9E9)", span)
+        own = () if seventh is None else (seventh,)
+        return self._guard(span, lambda: JointTarget((*joints, *own), external, name))
 
     def _configuration(self, robconf: Sequence[float], span: Span) -> AbbConfiguration:
         if any(v != int(v) for v in robconf):
             raise SourceError(f"a confdata has whole numbers, not {list(robconf)}", span)
         cf1, cf4, cf6, cfx = (int(v) for v in robconf)
-        return self._guard(span, lambda: AbbConfiguration(cf1, cf4, cf6, cfx))
+        seven = self.external.has_seventh
+        return self._guard(span, lambda: AbbConfiguration(cf1, cf4, cf6, cfx, seven=seven))
 
     # -------------------------------------------------------------------- helpers
 

@@ -19,7 +19,15 @@ from ....core.source.patch.uses import MovePart
 from ....core.source.text.numerals import shortest
 from ..motion.configuration import AbbConfiguration
 from ..syntax.lexer import number_value
-from ..values.records import EXTERNAL_AXES, MM, UNUSED_AXIS, metres
+from ..values.records import (
+    ARM_AXES,
+    EXTERNAL_AXES,
+    MM,
+    UNUSED_AXIS,
+    arm_axes,
+    extax_values,
+    metres,
+)
 
 ZONE_NUMBERS = 6
 JOINT_NUMBERS = 12
@@ -75,9 +83,10 @@ def numbers_of(
     if isinstance(new, PoseTarget):
         return _pose_numbers(new, old if isinstance(old, PoseTarget) else None, axis_kinds)
     if isinstance(new, JointTarget):
-        if len(new.joints) != JOINT_NUMBERS - EXTERNAL_AXES:
-            raise InputError(f"a jointtarget has 6 arm axes, not {len(new.joints)}")
-        return (*map(_degrees, new.joints), *_external(new.external, axis_kinds))
+        axes = arm_axes(axis_kinds)
+        if len(new.joints) != axes:
+            raise InputError(f"a jointtarget has {axes} arm axes, not {len(new.joints)}")
+        return (*map(_degrees, new.joints[:ARM_AXES]), *_extax(new, axis_kinds))
     if isinstance(new, Speed):
         return _speed_numbers(new)
     if isinstance(new, Radius):
@@ -136,7 +145,7 @@ def _pose_numbers(
         *map(in_millimetres, new.pose.position),
         *rotation,
         *_configuration(new.configuration),
-        *_external(new.external, axis_kinds),
+        *_extax(new, axis_kinds),
     )
 
 
@@ -148,18 +157,25 @@ def _configuration(configuration: Configuration | None) -> list[LiteralNumber]:
     return list(map(as_it_is, configuration.record))
 
 
-def _external(values: Sequence[float], kinds: Sequence[str]) -> list[LiteralNumber]:
+def _extax(target: PoseTarget | JointTarget, kinds: Sequence[str]) -> list[LiteralNumber]:
+    values = extax_values(target, kinds)
     if len(values) > len(kinds):
         raise InputError(
             f"the target has {len(values)} external axes, but the robot that the program was read "
             f"for has {len(kinds)}: read it again with its robot named"
         )
+    # Where no axis is programmed some texts say 9E9 and others 0; both are read alike, but for the
+    # arm angle.
+    free = LiteralNumber(UNUSED_AXIS, UNUSED_AXIS, _same, read=_unused)
+    unstated = LiteralNumber(UNUSED_AXIS, UNUSED_AXIS, _same)
+    if arm_axes(kinds) > ARM_AXES and not values:
+        values = (None,)
     used = [
-        in_millimetres(value) if kind == "linear" else _degrees(value)
+        unstated
+        if value is None
+        else (in_millimetres(value) if kind == "linear" else _degrees(value))
         for value, kind in zip(values, kinds, strict=False)
     ]
-    # Where no axis is programmed some texts say 9E9 and others 0; both are read alike.
-    free = LiteralNumber(UNUSED_AXIS, UNUSED_AXIS, _same, read=_unused)
     return [*used, *[free] * (EXTERNAL_AXES - len(used))]
 
 

@@ -17,6 +17,7 @@ from typing import Any
 
 from ....core.errors import InputError
 from ....core.program.speed import Speed
+from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Fine, Radius, Zone
 from ....core.spatial.pose import Pose, Quaternion, Vector3
@@ -32,9 +33,14 @@ MM = 1 / PER_METRE
 UNUSED_AXIS = 9e9
 """Value of an external axis that a target does not position (``9E9``)."""
 
+ARM_AXES = 6
+"""Of a robjoint."""
 EXTERNAL_AXES = 6
 """Of an extjoint."""
-AXIS_KINDS = ("linear", "rotating")
+SEVENTH = "seventh"
+"""Kind of ``eax_a`` of an arm with seven axes: of a jointtarget its own seventh axis, of a
+robtarget the arm angle."""
+AXIS_KINDS = ("linear", "rotating", SEVENTH)
 """Of external axes: RAPID's own text does not say which one an axis is."""
 
 VMAX: Record = (10000.0, 500.0, 5000.0, 1000.0)
@@ -43,6 +49,25 @@ abb_motion_program_exec, beyond the TCP speed of any robot in the catalogue."""
 
 LOAD0: Record = (0.001, (0.0, 0.0, 0.001), (1.0, 0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
 """``load0``: the least load that the controller accepts; the core says None."""
+
+
+def arm_axes(kinds: Sequence[str]) -> int:
+    """Axes of the arm, by the kinds of external axes."""
+    return ARM_AXES + (tuple(kinds[:1]) == (SEVENTH,))
+
+
+def extax_values(
+    target: PoseTarget | JointTarget, kinds: Sequence[str]
+) -> tuple[float | None, ...]:
+    """What the extjoint of a target says, rad and m, eax_a first; None for ``9E9``.
+
+    Args:
+        kinds: of external axes, as for the reader.
+    """
+    if arm_axes(kinds) == ARM_AXES:
+        return target.external
+    own = target.arm_angle if isinstance(target, PoseTarget) else target.joints[ARM_AXES:][0]
+    return (own, *target.external) if own is not None or target.external else ()
 
 
 def metres(point: Sequence[float]) -> Vector3:

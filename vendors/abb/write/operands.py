@@ -7,7 +7,6 @@ What RAPID cannot say is an `InputError`; the writer adds which move it was.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from ....core.errors import InputError
 from ....core.program.speed import Speed
@@ -18,10 +17,13 @@ from ....core.source.write.declarations import NewDatum
 from ..motion.configuration import AbbConfiguration
 from ..values.predefined import NAMES, SPEEDS, ZONES
 from ..values.records import (
+    ARM_AXES,
     EXTERNAL_AXES,
     MM,
     UNUSED_AXIS,
     Record,
+    arm_axes,
+    extax_values,
     load_record,
     pose_record,
     speed_record,
@@ -35,7 +37,6 @@ from .options import RapidOptions, ZoneStyle
 
 Operand = str | NewDatum
 
-ARM_AXES = 6
 UNSTATED_CONFIGURATION: Record = (0.0, 0.0, 0.0, 0.0)
 
 _SPEED_NAMES = {literal(record): name for name, record in SPEEDS.items()}
@@ -54,17 +55,18 @@ class Operands:
         record = (
             *pose_record(target.pose),
             _configuration(target.configuration),
-            self._external(target.external),
+            self._extax(target),
         )
         return self.declarations.add("robtarget", record, target.name)
 
     def jointtarget(self, target: JointTarget) -> Operand:
         """``[robax, extax]`` (jointtarget)."""
-        if len(target.joints) != ARM_AXES:
+        axes = arm_axes(self._options.external_axes)
+        if len(target.joints) != axes:
             raise InputError(
-                f"a jointtarget has {ARM_AXES} arm axes, but the target has {len(target.joints)}"
+                f"a jointtarget has {axes} arm axes, but the target has {len(target.joints)}"
             )
-        record = (tuple(map(math.degrees, target.joints)), self._external(target.external))
+        record = (tuple(map(math.degrees, target.joints[:ARM_AXES])), self._extax(target))
         return self.declarations.add("jointtarget", record, target.name)
 
     def speed(self, speed: Speed) -> Operand:
@@ -110,9 +112,10 @@ class Operands:
             return "load0"
         return self.declarations.add("loaddata", load_record(load), load.name, "load1")
 
-    def _external(self, values: Sequence[float]) -> Record:
+    def _extax(self, target: PoseTarget | JointTarget) -> Record:
         """``extax``: mm or degrees, ``9E9`` for axes that are not positioned."""
         kinds = self._options.external_axes
+        values = extax_values(target, kinds)
         if len(values) > len(kinds):
             raise InputError(
                 f"the target has {len(values)} external axes, of which the writer knows "
@@ -120,7 +123,9 @@ class Operands:
                 "('rotating',))"
             )
         used = [
-            value / MM if kind == "linear" else math.degrees(value)
+            UNUSED_AXIS
+            if value is None
+            else (value / MM if kind == "linear" else math.degrees(value))
             for value, kind in zip(values, kinds, strict=False)
         ]
         return (*used, *[UNUSED_AXIS] * (EXTERNAL_AXES - len(used)))

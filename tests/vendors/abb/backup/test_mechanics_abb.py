@@ -355,7 +355,7 @@ def test_an_arm_of_four_motors_lacks_no_ranges() -> None:
     ("kind", "why"),
     [
         ("360_1.6_6", "IRB 360-6/1600 cannot be driven: it is a delta robot"),
-        ("14000_0.5_0.5", "each of its two arms has seven axes"),
+        ("14000_0.5_0.5", "abb/irb14000-05-056-left (0.5 kg"),
         ("6700_3.20_150", "no arm ROB1_6700_3.20_150 is known; near it are"),
     ],
 )

@@ -1,0 +1,1 @@
+"""Arms of seven axes: the arm angle, and the configurations that have a given one."""
