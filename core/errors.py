@@ -147,12 +147,14 @@ class Note:
         span: where in the source.
         asked: whether it is about something that the program asks, and that is listed among its
             questions.
+        damage: whether it is about text that no controller takes, and that was stepped over.
     """
 
     message: str
     move: int | None = None
     span: Span | None = None
     asked: bool = False
+    damage: bool = False
 
     def __str__(self) -> str:
         where = "" if self.span is None else f"{self.span}: "

@@ -12,7 +12,7 @@ from ..program.move import Move, MoveJ, Opaque, Wait
 from ..program.target import JointTarget, PoseTarget
 from ..program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from .finding import Hit, ProgramSubject, Rule, Severity
-from .text_rules import pitfalls, unused_targets
+from .text_rules import damaged_text, pitfalls, unused_targets
 
 _SAME_PLACE = 1e-5
 """m within which two targets are one place."""
@@ -209,6 +209,8 @@ def _payload_exceeded(subject: ProgramSubject) -> Iterator[Hit]:
 
 def _reader_notes(subject: ProgramSubject) -> Iterator[Hit]:
     for note in subject.program.notes:
+        if note.damage:
+            continue
         meant = f"nothing, if meant so; else answer what is open by {spelt('answers')}"
         yield Hit(note.message, meant, note.move, note.span)
 
@@ -225,6 +227,12 @@ PROGRAM_RULES = (
         Severity.WARNING,
         "a zone that is programmed, and something switches it off",
         _zone_switched_off,
+    ),
+    Rule(
+        "damaged-text",
+        Severity.ERROR,
+        "text that no controller takes, and that was stepped over",
+        damaged_text,
     ),
     Rule("joint-limit", Severity.ERROR, "joint targets outside the robot's range", _joint_limit),
     Rule(

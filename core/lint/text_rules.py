@@ -38,6 +38,13 @@ def unused_targets(subject: ProgramSubject) -> Iterator[Hit]:
                 )
 
 
+def damaged_text(subject: ProgramSubject) -> Iterator[Hit]:
+    """What no controller takes, and was stepped over."""
+    for note in subject.program.notes:
+        if note.damage:
+            yield Hit(note.message, "correct the text", span=note.span)
+
+
 def _known(texts: Iterable[str], wording: Wording) -> Counter[str]:
     """How often every name stands in the texts."""
     return Counter(

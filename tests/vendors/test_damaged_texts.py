@@ -6,6 +6,8 @@ import pytest
 
 from flyby.core.driving.past_faults import drive
 from flyby.core.errors import FaultCause, ParseError, SourceError
+from flyby.core.lint.check import check
+from flyby.core.lint.finding import Severity
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
@@ -332,3 +334,14 @@ def test_moves_behind_a_damaged_setting_are_faults_until_it_is_set_again(whole) 
     made = read(language, HOME[language], line, _SETTINGS[whole], line, whole, line, text=text)
     assert [bool(move.open) for move in made.moves] == [False, False, True, False]
     assert "mend that line" in str(made.moves[2].open)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_check_finds_damaged_lines(language: str) -> None:
+    made = read(language, HOME[language], STILL[language][0], LOW[language])
+    found = check(made, find_vendor(language), find_robot(ROBOTS[language]))
+    (finding,) = (f for f in found if f.rule == "damaged-text")
+    assert finding.severity is Severity.ERROR
+    assert finding.span is not None
+    assert finding.span.line == FRAME[language].partition("{}")[0].count("\n") + 2
+    assert not [f for f in found if f.rule == "reader" and f.span == finding.span]

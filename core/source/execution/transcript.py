@@ -66,9 +66,14 @@ class Notes:
         where = f" (in {self.where})" if self.where else ""
         self._once.setdefault((self.where, kind), Note(message + where, span=span))
 
-    def count(self, message: str, span: Span) -> None:
-        """A note, given once with the number of times that it held."""
-        first, count = self._counted.get(message.lower(), (Note(message, span=span), 0))
+    def count(self, message: str, span: Span, *, damage: bool = False) -> None:
+        """A note, given once with the number of times that it held.
+
+        Args:
+            damage: see `Note`.
+        """
+        new = Note(message, span=span, damage=damage)
+        first, count = self._counted.get(message.lower(), (new, 0))
         self._counted[message.lower()] = first, count + 1
 
     def group(self, kind: str, name: str, span: Span) -> None:

@@ -59,13 +59,13 @@ class Damage:
     def notes(self) -> tuple[Note, ...]:
         """What is to be said about it."""
         found = [
-            Note(f"{error.message}: no controller takes this; {then}", span=error.span)
+            Note(f"{error.message}: no controller takes this; {then}", span=error.span, damage=True)
             for error, then in zip(self.errors[:_TOLD], self._mended, strict=False)
         ]
         rest = len(self.errors) - len(found)
         if rest:
             span = self.errors[_TOLD].span
-            found.append(Note(f"{rest} further such places in the file", span=span))
+            found.append(Note(f"{rest} further such places in the file", span=span, damage=True))
         return tuple(found)
 
 

@@ -102,7 +102,8 @@ class Lexicon:
         looks = {} if special is None else special
         fold, keywords, position = self.fold, self.keywords, start
         seen = unbroken(text)
-        follow, groups = self.token.scanner, {n: g for g, n in self.token.groupindex.items()}
+        groups = {number: group for group, number in self.token.groupindex.items()}
+        follow = self.token.scanner  # type: ignore[attr-defined]  # as `re.Scanner` uses it
         match = follow(seen, position).match  # each goes on where the last one ended
         while True:
             found = match()

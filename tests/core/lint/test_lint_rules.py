@@ -102,6 +102,10 @@ CASES = {
         program(line(0.2, name="p1"), line(0.2, 0.2, name="p2"), line(0.200005, name="p3")),
         program(line(0.2, name="p1"), line(0.2, 0.2, name="p2"), line(0.2, 0.001, name="p3")),
     ),
+    "damaged-text": (
+        program(line(0.2), notes=(Note("'=' stands where ':=' should", damage=True),)),
+        program(line(0.2), notes=(Note("the condition depends on di1"),)),
+    ),
     "reader": (
         program(line(0.2), notes=(Note("the condition depends on di1"),)),
         program(line(0.2)),

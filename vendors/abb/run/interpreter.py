@@ -410,7 +410,8 @@ class Interpreter:
         if not self.course.answers.mends or isinstance(error, ProgramError):
             return False
         message = str(error).removeprefix(f"{error.span}: ")
-        self.out.notes.count(f"{message}: what it sets is not known from here on", statement.span)
+        said = f"{message}: what it sets is not known from here on"
+        self.out.notes.count(said, statement.span, damage=True)
         self.settings.lose(settings, f"{statement.text} in line {statement.span.line}: {message}")
         self.out.keep(statement.span, statement.text, "")
         return True

@@ -186,7 +186,8 @@ class Globals:
         message = f"{name} is declared twice: first {where}"
         if not self._mended:
             raise SourceError(message, span)
-        self.notes.append(Note(f"{message}: no controller takes this; {then}", span=span))
+        text = f"{message}: no controller takes this; {then}"
+        self.notes.append(Note(text, span=span, damage=True))
         return message
 
     def _add_types(self, module: Module, home: Home) -> None:
