@@ -353,3 +353,31 @@ def test_states_of_sockets_are_no_signals():
     made = find_vendor("abb").read(text, "m.mod")
     assert len(made.moves) == 1
     assert not made.questions
+
+
+def test_a_search_finds_a_point_that_another_module_declares():
+    robot = find_robot("abb/irb6640-180-255")
+    text = (
+        "MODULE m\nCONST robtarget p:=[[1300,0,900],[0,0,1,0],[0,0,0,0],"
+        "[9E9,9E9,9E9,9E9,9E9,9E9]];\nPROC main()\nMoveJ p,v100,fine,tool0;\n"
+        "SearchL\\Stop,di1,pf,Offs(p,0,0,-100),v50,tool0;\nMoveL Offs(pf,0,0,50),v50,fine,tool0;\n"
+        "ENDPROC\nENDMODULE\n"
+    )
+    made = find_vendor("abb").read(text, "m.mod", robot=robot)
+    heights = [round(1e3 * move.target.pose.position[2]) for move in made.moves]
+    assert heights == [900, 800, 850]
+    assert any("'pf' is written and not declared" in note.message for note in made.notes)
+
+
+def test_joint_values_that_nothing_sets_are_asked_for():
+    text = (
+        "MODULE m\nPERS jointtarget j;\nPROC main()\nMoveAbsJ j,v100,fine,tool0;\n"
+        "j.robax:=[0,0,0,0,30,0];\nMoveAbsJ j,v100,fine,tool0;\nENDPROC\nENDMODULE\n"
+    )
+    vendor = find_vendor("abb")
+    made = vendor.read(text, "m.mod")
+    assert [move.target.joints[4] for move in made.moves] == pytest.approx([0, 0.5235987755982988])
+    assert [question.key for question in made.questions] == ["j"]
+    answers = Answers(values={"j": ((1.0,) * 6, (9e9,) * 6)})
+    made = vendor.read(text, "m.mod", answers=answers)
+    assert made.moves[0].target.joints == pytest.approx([0.017453292519943295] * 6)

@@ -51,10 +51,11 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind_move(invoke, form)
     point = bound.named("SearchPoint")
     cell = run.evaluator.cell(point, scope) if isinstance(point, Name) else None
-    if cell is None or cell.constant or not isinstance(point, Name):
+    if not isinstance(point, Name) or (cell is not None and cell.constant):
         raise SourceError(f"{invoke.text} needs a datum to put its point in", point.span)
+    kind = JOINTTARGET if form.kind == "external" else ROBTARGET
     end = bound.named("ToJointPos" if form.kind == "external" else "ToPoint")
-    answer = run.evaluator.answers.ask(point.span, cell.type)
+    answer = run.evaluator.answers.ask(point.span, kind if cell is None else cell.type)
     where = "at its end; answer the point if the program computes with it"
     if answer is not None:
         where = "where the answers say"
@@ -62,7 +63,6 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
     inner = scope
     if answer is not None and any(option in bound.options for option in _STOPS):
         inner = scope.inner(scope.where)
-        kind = JOINTTARGET if form.kind == "external" else ROBTARGET
         inner.cells[_FOUND] = Variable(_FOUND, kind, value=answer)
         there = Name(end.span, _FOUND, point.text)
         bound = replace(bound, required=tuple(there if e is end else e for e in bound.required))

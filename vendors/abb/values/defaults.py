@@ -130,6 +130,8 @@ def unset(type_: Type, name: str, where: Span) -> Value:
             parts |= {"robhold": missing("robhold", True)}
         elif type_ is WOBJDATA:
             parts |= {"ufprog": missing("ufprog", True)}
+        elif type_ is ROBJOINT:
+            parts = {axis: missing(axis, 0.0) for axis in parts}
         elif type_ is LOADDATA:
             parts |= {"mass": missing("the mass", LOAD0[0])}
         return tuple(parts.values())

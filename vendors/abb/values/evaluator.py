@@ -432,9 +432,8 @@ class Evaluator:
                 return Located(held, None, None)
             sizes = found.cell.dimensions if found.cell is not None and not name.path else ()
             kind = QuestionKind.DATUM if found.cell is not None else QuestionKind.SIGNAL
-            first = found.cell is None or (
-                isinstance(found.value, Unknown) and found.value.key == name.text
-            )
+            unknown = find_unknown(found.value)
+            first = found.cell is None or (unknown is not None and unknown.key == name.text)
             answer = self.answers.ask(name.span, found.type, sizes, kind if first else None)
             if (
                 answer is None
