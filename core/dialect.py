@@ -19,9 +19,13 @@ from .program.speed import Speed
 from .program.zone import Radius, Zone, ZoneKind
 
 if TYPE_CHECKING:
+    from .errors import Note
     from .program.event import Event
     from .program.move import Move
     from .program.signal import Meet, SignalAction
+    from .program.world_zone import WorldZone
+    from .robot.model import Robot
+    from .source.text.files import SourceFile
 
 _VISIBLE = re.compile(r"[^\r\n]")
 _LISTED = re.compile(r"(?:\[[^\]]*\]|\{[^}]*\}|[^,\[{])+")
@@ -139,6 +143,11 @@ def _no_meeting(text: str) -> Meet | None:
     return None
 
 
+ZonesOf = Callable[
+    ["Mapping[str, SourceFile]", "Robot"], "tuple[tuple[WorldZone, ...], tuple[Note, ...]]"
+]
+
+
 @dataclass(frozen=True)
 class SignalWords:
     """How a language sets outputs and waits for signals, in statements of their own.
@@ -151,6 +160,8 @@ class SignalWords:
         event: the statement that the text of an event on the way is short for.
         stops: whether the robot stops where an output is set.
         meets: what a statement waits for of other robots' programs; None for nothing.
+        zones: world zones that the files of a program have the controller watch for a robot, and
+            what is said of those that cannot be followed; None where a language has none.
         together: the id of a move, by its statement, that other robots make with it; None where a
             language has none, and one motion alone is made together behind a meeting.
     """
@@ -163,6 +174,7 @@ class SignalWords:
     stops: bool = False
     meets: Callable[[str], Meet | None] = _no_meeting
     together: Callable[[str], str | None] | None = None
+    zones: ZonesOf | None = None
 
 
 @dataclass(frozen=True)

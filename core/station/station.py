@@ -11,9 +11,9 @@ from ..display import counted, in_line
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
+from ..program.world_zone import WorldZone
 from .gates import Gate
 from .pace import ClockPace
-from .world_zones import WorldZone
 
 
 @dataclass(frozen=True, repr=False)

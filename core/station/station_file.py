@@ -12,10 +12,10 @@ from pathlib import Path
 
 from ..errors import InputError
 from ..files.tables import LENGTH, TomlTable
+from ..program.world_zone import WorldZone
 from .gates import Gate, GateKind, Input
 from .plc import PLC
 from .station import Wire, signal_key
-from .world_zones import WorldZone
 
 _DELAY = {"ms": 1e-3, "s": 1.0}
 _LONGEST = 60.0
@@ -226,12 +226,20 @@ def _zone(name: str, table: TomlTable) -> WorldZone:
     corners = table.quantities("box", LENGTH, 6) if table.unit_key("box", LENGTH) else None
     ball = table.quantities("ball", LENGTH, 4) if table.unit_key("ball", LENGTH) else None
     axes = table.value("axes_deg") if table.has("axes_deg") else []
-    if corners is None and ball is None and not axes:
-        raise table.error("", "needs box_mm, ball_mm or axes_deg")
+    cylinder = (
+        table.quantities("cylinder", LENGTH, 5) if table.unit_key("cylinder", LENGTH) else None
+    )
+    if corners is None and ball is None and cylinder is None and not axes:
+        raise table.error("", "needs box_mm, ball_mm, cylinder_mm or axes_deg")
     if not isinstance(axes, list) or not all(map(_is_range, axes)):
         raise table.error("axes_deg", "holds the number of an axis with its range: [[1, -30, 30]]")
     if ball is not None and ball[3] <= 0.0:
         raise table.error("ball_mm", "is a centre and a radius above zero: [x, y, z, r]")
+    if cylinder is not None and (cylinder[3] <= 0.0 or cylinder[4] == 0.0):
+        raise table.error(
+            "cylinder_mm",
+            "is the centre of one end, a radius above zero and a height: [x, y, z, r, h]",
+        )
     inside = table.flag("inside", True)
     table.finish()
     return WorldZone(
@@ -241,6 +249,7 @@ def _zone(name: str, table: TomlTable) -> WorldZone:
         inside,
         None if corners is None else (_point(corners[:3]), _point(corners[3:])),
         None if ball is None else (_point(ball[:3]), ball[3]),
+        None if cylinder is None else (_point(cylinder[:3]), cylinder[3], cylinder[4]),
         tuple((int(k) - 1, math.radians(low), math.radians(high)) for k, low, high in axes),
     )
 

@@ -1,59 +1,25 @@
 """Outputs that the controller itself sets while the TCP, or axes, are in a space.
 
-World zones (ABB, ``WZBoxDef`` and ``WZDOSet``) and workspaces (KUKA, ``$WORKSPACE``,
-``$AXWORKSPACE``). They watch the TCP or the axes, not the arm; the station file states them, as
-programs set them up in routines that run when the controller starts.
+World zones (ABB, ``WZBoxDef`` and ``WZDOSet``), which programs set up in routines that run when the
+controller starts, and workspaces (KUKA, ``$WORKSPACE``, ``$AXWORKSPACE``), which the station file
+states. They watch the TCP or the axes, not the arm.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import FloatArray
+from ..arrays import FloatArray, IntArray
+from ..motion.command.trajectory import Trajectory
 from ..motion.emulator.run import Run
 from ..program.signal import SetSignal
+from ..program.world_zone import WorldZone
 from .actions import Action
 
-
-@dataclass(frozen=True)
-class WorldZone:
-    """A space with an output.
-
-    Args:
-        name: in the station file.
-        robot: whose TCP or axes are watched.
-        signal: of the robot, that is set.
-        inside: what it is while inside; outside it is the other.
-        box: two corners in the world, m; None for none.
-        ball: centre in the world and radius, m; None for none.
-        axes: least and greatest value of axes by index, rad or m.
-    """
-
-    name: str
-    robot: str
-    signal: str
-    inside: bool = True
-    box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-    ball: tuple[tuple[float, float, float], float] | None = None
-    axes: tuple[tuple[int, float, float], ...] = ()
-
-    def holds(self, position: FloatArray, q: FloatArray) -> NDArray[np.bool_]:
-        """Whether the TCP at (T, 3) m in the world, and axes (T, N), are inside."""
-        found = np.ones(len(position), dtype=bool)
-        if self.box is not None:
-            one, other = np.array(self.box)
-            low, high = np.minimum(one, other), np.maximum(one, other)
-            found &= ((position >= low) & (position <= high)).all(axis=1)
-        if self.ball is not None:
-            centre, radius = self.ball
-            found &= np.linalg.norm(position - np.array(centre), axis=1) <= radius
-        for index, least, greatest in self.axes:
-            found &= (q[:, index] >= least) & (q[:, index] <= greatest)
-        return found
+_WITHIN = 5e-5
+"""s within which a crossing is located, and for which a space may be touched unseen."""
 
 
 def with_zones(
@@ -81,13 +47,80 @@ def on_at_start(zone: WorldZone, run: Run) -> bool:
 def crossings(zone: WorldZone, run: Run) -> Iterator[Action]:
     """What a zone does to its output while a program is driven.
 
-    A change counts at the first sample behind it; it may come from the sample before on.
+    Between samples the motion cannot leave what speeds and accelerations at their ends allow: where
+    that leaves it open whether the space is entered or left, it is looked at in ever shorter steps.
     """
     trajectory = run.trajectory
-    inside = zone.holds(trajectory.position, trajectory.q)
-    for k in np.flatnonzero(inside[1:] != inside[:-1]):
-        on = bool(inside[k + 1]) == zone.inside
-        before, behind = (float(t) for t in trajectory.t[k : k + 2])
-        text = f"zone {zone.name} {'entered' if inside[k + 1] else 'left'}"
-        move = int(trajectory.move[k])
-        yield Action(SetSignal(zone.signal, on), behind, move, text, None, before)
+    for begin, end, entered in _located(zone, trajectory):
+        move = int(trajectory.move[np.searchsorted(trajectory.t, begin, "right") - 1])
+        text = f"zone {zone.name} {'entered' if entered else 'left'}"
+        yield Action(SetSignal(zone.signal, entered == zone.inside), end, move, text, None, begin)
+
+
+def _located(zone: WorldZone, trajectory: Trajectory) -> list[tuple[float, float, bool]]:
+    """Crossings in their order: from when, until when (s), and whether the space is entered."""
+    between = _Between(trajectory)
+    begin, end = trajectory.t[:-1], trajectory.t[1:]
+    first = zone.depths(trajectory.position, trajectory.q)
+    one, other = first[:-1], first[1:]
+    found: list[tuple[float, float, bool]] = []
+    while len(begin):
+        # Where no depth changes its sign, and none can meanwhile, nothing is crossed.
+        room = np.abs(one) + np.abs(other) - between.fastest(begin) * (end - begin)[:, None]
+        same = (one >= 0.0) == (other >= 0.0)
+        kept = same & ((room > 0.0) | np.isinf(one))
+        outside = (kept & (one < 0.0)).any(axis=1)
+        open_ = ~outside & ~kept.all(axis=1)
+        begin, end, one, other = begin[open_], end[open_], one[open_], other[open_]
+        short = end - begin <= _WITHIN
+        before, behind = ((depths >= 0.0).all(axis=1) for depths in (one, other))
+        for k in np.flatnonzero(short & (before != behind)):
+            found.append((float(begin[k]), float(end[k]), bool(behind[k])))
+        begin, end, one, other = begin[~short], end[~short], one[~short], other[~short]
+        middle = 0.5 * (begin + end)
+        half = zone.depths(*between.at(middle))
+        begin, end = np.concatenate([begin, middle]), np.concatenate([middle, end])
+        one, other = np.concatenate([one, half]), np.concatenate([half, other])
+    return sorted(found)
+
+
+class _Between:
+    """A trajectory between its samples: cubics with the samples' speeds.
+
+    Args:
+        trajectory: of the whole program.
+    """
+
+    def __init__(self, trajectory: Trajectory) -> None:
+        self._t = trajectory.t
+        several = len(self._t) > 1
+        position = trajectory.position
+        speed = np.gradient(position, self._t, axis=0) if several else np.zeros_like(position)
+        self._values = np.concatenate([position, trajectory.q], axis=1)
+        self._speeds = np.concatenate([speed, trajectory.dq], axis=1)
+        # (T − 1, 1 + N), of the TCP and the axes: the greater speed of both ends, and what twice
+        # the change of speed between them would add within.
+        tcp = np.linalg.norm(speed, axis=1)[:, None]
+        rates = np.concatenate([tcp, np.abs(trajectory.dq)], axis=1)
+        change = np.abs(np.diff(self._speeds, axis=0))
+        more = np.concatenate([np.linalg.norm(change[:, :3], axis=1)[:, None], change[:, 3:]], 1)
+        self._fastest = np.maximum(rates[:-1], rates[1:]) + 2.0 * more
+
+    def _row(self, t: FloatArray) -> IntArray:
+        return np.clip(np.searchsorted(self._t, t, "right") - 1, 0, len(self._t) - 2)
+
+    def fastest(self, t: FloatArray) -> FloatArray:
+        """(T, 1 + N), m/s of the TCP and speeds of the axes, that the stretches round times (T,)
+        do not go beyond."""
+        return np.asarray(self._fastest[self._row(t)])
+
+    def at(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The TCP (T, 3) m and axes (T, N) at times (T,) s."""
+        k = self._row(t)
+        span = self._t[k + 1] - self._t[k]
+        s = ((t - self._t[k]) / span)[:, None]
+        rise = self._values[k + 1] - self._values[k]
+        first, last = (span[:, None] * self._speeds[row] for row in (k, k + 1))
+        bent = first + s * (3 * rise - 2 * first - last + s * (first + last - 2 * rise))
+        values = self._values[k] + s * bent
+        return values[:, :3], values[:, 3:]

@@ -15,6 +15,8 @@ from .names import check_names
 if TYPE_CHECKING:
     from ...core.dialect import SignalWords
     from ...core.program.program import Program
+    from ...core.source.reading import Reading
+    from ...core.source.text.files import SourceFile
     from ...core.station.actions import Action
     from ...core.station.station import RobotStation, StationRobot
     from ...core.station.station_file import MemberFile, StationFile
@@ -51,7 +53,8 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     from ...core.station.world_zones import on_at_start, with_zones
 
     file = read_station_file(source) if is_station_file(source) else _of_backup(source)
-    members, actions, unknown, ids = {}, {}, [], {}
+    members, actions, ids = {}, {}, {}
+    unknown: list[Note] = []
     notes: list[Note] = []
     for member in file.members:
         say(f"reading and driving {member.name}")
@@ -59,12 +62,16 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         members[member.name] = made
         speaks = setup.vendor.speaks
         words = None if speaks is None else speaks.signals
+        file, said = _with_own_zones(file, made, words)
         _check_axes(file, made)
         actions[member.name] = with_zones(
             actions_of(made.run, words), file.zones, member.name, made.run
         )
         ids[member.name] = _ids(made, words)
         looked_at = _looked_at(file, member.name) - _zoned(file, member.name)
+        for note in said:
+            asked = any(name.casefold() in note.message.casefold() for name in looked_at)
+            (unknown if asked else notes).append(note)
         for text, span in unknown_of(made.run, words, looked_at):
             where = "" if span is None else f"{span}: "
             unknown.append(
@@ -73,7 +80,11 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
                     "times are as if it did nothing; what the interlocks allow is not looked at"
                 )
             )
-    check_names(file, members, actions)
+    try:
+        check_names(file, members, actions)
+    except InputError as error:
+        why = "; ".join(note.message for note in unknown if "not followed" in note.message)
+        raise InputError(f"{error}; {why}" if why else str(error)) from None
     _check_starts(file, members)
     try:
         shared = synchronised({n: m.run for n, m in members.items()}, actions, ids)
@@ -138,6 +149,46 @@ def _of_backup(source: Path) -> StationFile:
         MemberFile(name, None, source, None, name, None, None, None, 0.0) for name in moving
     )
     return StationFile(members, (), {}, frozenset(), {}, 0.0, (), source)
+
+
+def _with_own_zones(
+    file: StationFile, member: StationRobot, words: SignalWords | None
+) -> tuple[StationFile, list[Note]]:
+    """The station file with the world zones that a robot's program sets up itself, and what is said
+    of them. For outputs for which the file has a zone that one counts."""
+    from ...core.source.reading import Reading
+
+    reading = member.program.reading
+    if words is None or words.zones is None or not isinstance(reading, Reading):
+        return file, []
+    found, notes = words.zones(_loaded(reading, member.program), member.cell.robot)
+    stated = {name.casefold() for name in _zoned(file, member.name)}
+    own = [
+        replace(zone, robot=member.name) for zone in found if zone.signal.casefold() not in stated
+    ]
+    said = [
+        replace(note, message=f"{member.name}: {note.message}")
+        for note in notes
+        if not any(note.message.casefold().startswith(f"{name}:") for name in stated)
+    ]
+    said += [
+        Note(
+            f"{member.name}: the controller sets {zone.signal} by the world zone {zone.name}, from "
+            "the start on"
+        )
+        for zone in own
+    ]
+    return replace(file, zones=(*file.zones, *own)), said
+
+
+def _loaded(reading: Reading, program: Program) -> dict[str, SourceFile]:
+    """The files that a controller has loaded: those of its backup; else those that are driven or
+    were named, as others may only lie beside them."""
+    if reading.options.beside is not None:
+        return dict(reading.files)
+    named = {reading.main, *map(str, reading.options.others)}
+    named |= {move.statement.file for move in program.moves if move.statement is not None}
+    return {name: file for name, file in reading.files.items() if name in named}
 
 
 def _looked_at(file: StationFile, robot: str) -> set[str]:

@@ -7,6 +7,7 @@ import re
 from ...core.dialect import SignalWords
 from ...core.program.signal import Level, Meet, SetSignal, SignalAction, WaitSignal
 from ...core.source.text.conditions import ConditionWords, NoConditionError
+from .world_zones import world_zones
 
 _NAME = re.compile(r"[A-Za-z]\w*")
 _ON, _OFF = ("1", "high", "true"), ("0", "low", "false")
@@ -140,4 +141,5 @@ SIGNALS = SignalWords(
     event,
     meets=meets,
     together=together,
+    zones=world_zones,
 )

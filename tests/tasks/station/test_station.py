@@ -487,6 +487,77 @@ def test_a_world_zone_is_an_interlock_of_its_own(write: Write, space: str) -> No
     assert pair.in_time.proven and pair.safe
 
 
+WORLD_ZONES = """
+  CONST pos low := [200,-300,0];
+  VAR wzstationary wz1;
+  PROC power_on()
+    VAR shapedata vol;
+    {define}
+    WZDOSet \\Stat, wz1 {option}, vol, doInside, {value};
+  ENDPROC
+  PROC main()"""
+BOX = "WZBoxDef \\Inside, vol, low, [900,300,1500];"
+
+
+@pytest.mark.parametrize(
+    ("define", "zone"),
+    [
+        (BOX, "box_mm = [200, -300, 0, 900, 300, 1500]"),
+        ("WZSphDef \\Inside, vol, [350,0,600], 300;", "ball_mm = [350, 0, 600, 300]"),
+        (
+            "WZCylDef \\Inside, vol, [350,0,1500], 300, -1500;",
+            "cylinder_mm = [350, 0, 1500, 300, -1500]",
+        ),
+        (
+            f"WZLimJointDef \\Inside, vol, [[-60,-90,-90,-180,-90,-360],{UNUSED}], "
+            f"[[60,90,90,180,90,360],{UNUSED}];",
+            "axes_deg = [[1, -60, 60]]",
+        ),
+        (
+            f"WZHomeJointDef \\Inside, vol, [[0,0,0,0,30,0],{UNUSED}], "
+            f"[[60,90,90,180,90,360],{UNUSED}];",
+            "axes_deg = [[1, -60, 60]]",
+        ),
+    ],
+)
+def test_world_zones_of_a_program_are_those_of_the_station_file(
+    write: Write, define: str, zone: str
+) -> None:
+    """They are set up in a routine that nobody calls, and set the output at the same times."""
+    programs = {"one": [AWAY, "go 0", AWAY], "two": [AWAY, "WaitDI diInside,0", "go 0", AWAY]}
+    links = '[links]\n"one.doInside" = "two.diInside"\n'
+    stated = station(write(programs, f'{links}[zone.z]\nsignal = "one.doInside"\n{zone}\n'))
+    wanted = [(a.time, a.does.value) for a in stated.actions["one"]]
+    assert [on for _, on in wanted] == [True, False]
+
+    def read(option: str = "\\Inside", value: str = "1", defined: str = define) -> object:
+        file = write(programs, links)
+        module = file.parent / "one.mod"
+        set_up = WORLD_ZONES.format(define=defined, option=option, value=value)
+        module.write_text(module.read_text().replace("  PROC main()", set_up, 1))
+        return station(file)
+
+    made = read()
+    assert [(a.time, a.does.value) for a in made.actions["one"]] == wanted
+    (note,) = [str(note) for note in made.notes if "world zone" in str(note)]
+    assert "doInside" in note and "one.mod:" in note
+    outside = read(defined=define.replace("\\Inside", "\\Outside"), value="0")
+    assert [(a.time, a.does.value) for a in outside.actions["one"]] == wanted
+    early = read("\\Before")
+    assert any("\\Before" in str(note) for note in early.notes)
+
+
+def test_a_world_zone_that_is_calculated_is_said_and_what_it_allows_is_not(write: Write) -> None:
+    programs = {"one": [AWAY, "go 0"], "two": ["go 0", "WaitDI diInside,1", "go 1"]}
+    file = write(programs, '[links]\n"one.doInside" = "two.diInside"\n')
+    module = file.parent / "one.mod"
+    define = "WZBoxDef \\Inside, vol, low, Offs(low,1,2,3);"
+    set_up = WORLD_ZONES.format(define=define, option="\\Inside", value="1")
+    module.write_text(module.read_text().replace("  PROC main()", set_up, 1))
+    with pytest.raises(FlybyError, match="doInside: the zone that sets it is not followed: its"):
+        station(file)
+
+
 @pytest.mark.parametrize(
     ("rest", "words"),
     [
@@ -496,6 +567,7 @@ def test_a_world_zone_is_an_interlock_of_its_own(write: Write, space: str) -> No
         ('signal = "one.doIn"\naxes_deg = [[9, 0, 1]]\n', ("axes 1 to 6, no axis 9",)),
         ('signal = "one.doIn"\naxes_deg = [[1, 5, 1]]\n', ("[[1, -30, 30]]",)),
         ('signal = "one.doIn"\nball_mm = [0, 0, 0, 0]\n', ("radius",)),
+        ('signal = "one.doIn"\ncylinder_mm = [0, 0, 0, 9, 0]\n', ("cylinder_mm", "height")),
     ],
 )
 def test_bad_zones_are_refused(write: Write, rest: str, words: Sequence[str]) -> None:
