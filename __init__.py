@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from flyby.tasks.record import record
     from flyby.tasks.station.check import station_check
     from flyby.tasks.station.optimize import station_optimize
-    from flyby.tasks.station.place import place
+    from flyby.tasks.station.place import place, station_place
     from flyby.tasks.station.station import station
     from flyby.tasks.station.zones import station_zones
     from flyby.tasks.translate import translate
@@ -67,6 +67,7 @@ __all__ = [
     "station",
     "station_check",
     "station_optimize",
+    "station_place",
     "station_zones",
     "translate",
     "tune",
@@ -89,6 +90,7 @@ _ELSEWHERE = {
     "station": "station.station",
     "station_check": "station.check",
     "station_optimize": "station.optimize",
+    "station_place": "station.place",
     "station_zones": "station.zones",
     "tune": "free_motion.tune",
 }

@@ -7,7 +7,8 @@ from dataclasses import replace
 import typer
 
 from ..tasks.read import SourceOptions, read_with
-from ..tasks.station.place import PlaceOptions, place_with
+from ..tasks.station.place import PlaceOptions, place_with, station_place_with
+from .output.changed_station import is_station, refuse_given
 from .output.console import print_json, print_rich, print_table, progress, warn_of
 from .parameters import AsJson, ProgramFile, with_options
 
@@ -21,10 +22,15 @@ def place(
 ) -> None:
     """Find the base from which the program is driven fastest, all targets in reach, and prove it.
 
-    Targets stay where they are in the world. The exit status is 1 if no base is proven.
+    Targets stay where they are in the world. Of a station file --of names the robot; it keeps clear
+    of the others, too. The exit status is 1 if no base is proven.
     """
     with progress("reading the program") as say:
-        made = place_with(read_with(program, source), replace(options, report=say))
+        if is_station(program):
+            refuse_given([source], ())
+            made = station_place_with(program, replace(options, report=say))
+        else:
+            made = place_with(read_with(program, source), replace(options, report=say))
     if json:
         print_json(made.as_json())
     else:

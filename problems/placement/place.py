@@ -32,6 +32,9 @@ from .reach import Stops
 
 Shift = tuple[float, float, float, float]
 """m along x, y, z of the world, and rad about z, by which a base is elsewhere than it was."""
+BesideOthers = Callable[[Controller, Run], Certificate | None]
+"""Why a program as driven by a robot that stands somewhere does not hold beside other robots; None
+if it does."""
 _EMULATED = 16
 """Bases of the grid that are emulated."""
 _TURNS = 2
@@ -125,6 +128,7 @@ def place(
     cell: Cell,
     task: PlacementTask,
     tell: Callable[[str], None] = lambda _: None,
+    beside: BesideOthers | None = None,
 ) -> Placement:
     """Find the base from which a program is driven fastest, and prove its clearance.
 
@@ -134,6 +138,7 @@ def place(
         cell: what stands around; its robot stands where the base is now.
         task: where the base may be.
         tell: called with what is being done.
+        beside: what other robots say of the program as driven from a base.
 
     Raises:
         InputError: the robot has external axes, or no target stays where it is.
@@ -143,7 +148,7 @@ def place(
             f"{cell.robot.name} stands on or beside external axes: a base is found for arms that "
             "stand by themselves"
         )
-    return _Search(controller_at, program, cell, task, tell).run()
+    return _Search(controller_at, program, cell, task, tell, beside).run()
 
 
 @dataclass
@@ -153,6 +158,7 @@ class _Search:
     cell: Cell
     task: PlacementTask
     tell: Callable[[str], None]
+    beside: BesideOthers | None = None
     known: dict[Shift, PlacedBase | None] = field(default_factory=dict)
 
     def run(self) -> Placement:
@@ -287,13 +293,16 @@ class _Search:
         self.tell(f"proving a base, {placed.run.duration:.3f} s")
         robot = self._robot(placed.shift)
         scenes = scenes_of(replace(self.cell, robot=robot))
+        controller = self.controller_at(robot)
         certificate = certify(
-            self.controller_at(robot),
+            controller,
             placed.run,
             scenes,
             self.task.clearance,
             resolution=self.task.resolution,
         )
+        if self.beside is not None and certificate.proven:
+            certificate = self.beside(controller, placed.run) or certificate
         return replace(placed, certificate=certificate)
 
 

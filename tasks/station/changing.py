@@ -85,7 +85,6 @@ def changed_station(
         InputError: a file cannot be read, or an option names nothing.
         MotionError: the station never ends, or does not keep its clearances, as it is.
     """
-    from ...problems.improve.station.feasibility import StationFeasibility
     from .changed import ChangedStation, refuse_unwritable
 
     if not is_station_file(Path(source)):
@@ -94,14 +93,7 @@ def changed_station(
     refuse_unwritable(Path(source), opened.station.members)
     shares = _shares(opened, options)
     members = opened.station.members
-    words = {}
-    for name, member in members.items():
-        speaks = setup_of_program(member.program).vendor.speaks
-        words[name] = None if speaks is None else speaks.signals
-    options.say("sweeping motions")
-    feasibility = StationFeasibility(
-        opened.station, words, not opened.unknown, options.jitter, options.say
-    )
+    feasibility = feasibility_of(opened, options.jitter, options.say)
     ends = feasibility.state.run.schedules
     solutions: dict[str, Solution] = {}
     notes = [*opened.notes, *opened.unknown]
@@ -130,6 +122,29 @@ def changed_station(
         {name: solutions[name] for name in members if name in solutions},
         tuple(notes),
     )
+
+
+def feasibility_of(
+    opened: OpenedStation, jitter: float, say: Callable[[str], None]
+) -> StationFeasibility:
+    """What a station has to stand while one of its robots is otherwise.
+
+    Args:
+        opened: the station.
+        jitter: s by which each robot may be early or late where times alone keep robots apart.
+        say: told what is being done.
+
+    Raises:
+        InputError, MotionError: as `StationFeasibility`.
+    """
+    from ...problems.improve.station.feasibility import StationFeasibility
+
+    words = {}
+    for name, member in opened.station.members.items():
+        speaks = setup_of_program(member.program).vendor.speaks
+        words[name] = None if speaks is None else speaks.signals
+    say("sweeping motions")
+    return StationFeasibility(opened.station, words, not opened.unknown, jitter, say)
 
 
 def _shares(opened: OpenedStation, options: StationChangeOptions) -> dict[str, Share]:

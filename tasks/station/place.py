@@ -5,18 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.door import spelt
-from ...core.errors import MotionError, Note, OptionError
+from ...core.errors import InputError, MotionError, Note, OptionError, UnknownNameError
 from ..options import texts
 from ..options.entries import DISTANCE, NOT_NEGATIVE, number, value
 from ..options.keywords import by_keywords
 from ..setup import CellOptions, start_of, with_setup
+from .changing import feasibility_of
+from .opening import is_station_file, open_station
+from .station import JITTER
 
 if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...core.spatial.pose import Pose
+    from ...problems.placement.place import BesideOthers
     from .placed import PlacedRobot
 
 _ROOM = "500,500,0,45"
@@ -37,6 +43,9 @@ class PlaceOptions(CellOptions):
     clearance: float | None = number(
         None, "Clearance to keep, {unit}; the cell's own if unset.", DISTANCE, NOT_NEGATIVE
     )
+    of: str | None = value(
+        None, "Of a station file: the robot whose base is looked for, beside the others."
+    )
 
 
 def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
@@ -54,6 +63,53 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
     Raises:
         InputError: naming the option, or the robot stands on external axes.
     """
+    if options.of is not None:
+        raise OptionError(f"{spelt('of')} names a robot of a station file, and this is a program")
+    return _placed(program, options, None)
+
+
+place = by_keywords(place_with, PlaceOptions)
+
+
+def station_place_with(source: str | Path, options: PlaceOptions) -> PlacedRobot:
+    """Find the base of one robot of a station from which its program is driven fastest.
+
+    The others stay. From the new base the station ends no later, and the robots keep clear of each
+    other as well as before: whatever their clocks say, or in every order that the signals allow,
+    where that was so.
+
+    Args:
+        source: a station file.
+
+    Returns:
+        The base, cycle times of the robot and clearances in its cell there and now.
+
+    Raises:
+        InputError: a file cannot be read, an option names nothing, or the robot stands on external
+            axes.
+        MotionError: the station never ends, or does not keep its clearances, as it is.
+    """
+    if not is_station_file(Path(source)):
+        raise InputError(f"{source}: is no station file (.toml)")
+    if options.cell is not None or options.robot is not None:
+        name = "cell" if options.cell is not None else "robot"
+        raise OptionError(f"{spelt(name)} does not go with a station: its file says that")
+    opened = open_station(Path(source), options.say)
+    members = opened.station.members
+    if options.of is None:
+        raise OptionError(f"{spelt('of')} names the robot to place: {', '.join(members)}")
+    if options.of not in members:
+        raise UnknownNameError("robot of the station", options.of, members)
+    feasibility = feasibility_of(opened, JITTER, options.say)
+    beside = partial(feasibility.placed, options.of)
+    made = _placed(members[options.of].program, replace(options, of=None), beside)
+    return replace(made, notes=(*opened.notes, *opened.unknown, *made.notes))
+
+
+station_place = by_keywords(station_place_with, PlaceOptions)
+
+
+def _placed(program: Program, options: PlaceOptions, beside: BesideOthers | None) -> PlacedRobot:
     from ...core.motion.emulator.controller import Controller
     from ...problems.placement.place import PlacementTask, place
     from .placed import PlacedRobot
@@ -66,7 +122,7 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
         clearance=cell.clearance if options.clearance is None else options.clearance,
         start=start_of(program),
     )
-    found = place(lambda robot: Controller(vendor, robot), program, cell, task, options.say)
+    found = place(lambda robot: Controller(vendor, robot), program, cell, task, options.say, beside)
 
     def refused_from(base: Pose) -> MotionError | None:
         """Why the program cannot be driven from a base as its configurations say."""
@@ -95,9 +151,6 @@ def place_with(program: Program, options: PlaceOptions) -> PlacedRobot:
                 )
             )
     return PlacedRobot(program, cell, task.clearance, found, tuple(notes))
-
-
-place = by_keywords(place_with, PlaceOptions)
 
 
 def _room(given: str | Sequence[float]) -> tuple[float, float, float, float]:

@@ -23,6 +23,7 @@ from ....core.collision.mutual.pair_proof import (
 from ....core.collision.proof.verdict import Certificate, Verdict
 from ....core.dialect import SignalWords
 from ....core.errors import InputError, MotionError
+from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.station.actions import Action, actions_of
 from ....core.station.awaited import bearing
@@ -131,6 +132,25 @@ class StationFeasibility:
             return self._refused(name, self._with(name, run))
 
         return said
+
+    def placed(self, name: str, controller: Controller, run: Run) -> Certificate | None:
+        """What the other robots say of a program as driven from another base; None for nothing.
+
+        Args:
+            name: of the robot.
+            controller: that drives it as it stands there.
+            run: the program as driven from there.
+        """
+        members = dict(self.state.station.members)
+        own = members[name]
+        members[name] = replace(
+            own,
+            run=run,
+            cell=replace(own.cell, robot=controller.robot),
+            controller=controller,
+        )
+        station = replace(self.state.station, members=members)
+        return self._refused(name, self._state(station, self.state))
 
     def duration_with(self, name: str, run: Run) -> float:
         """s that the station takes with another program of one robot, proven or not."""
