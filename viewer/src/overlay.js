@@ -6,7 +6,7 @@ import { h, number } from "./dom.js";
 import { VIEWS } from "./scene.js";
 
 const TELL_EVERY = 120; // ms between numbers while time runs
-const OPTIONS = { programmed: "programmed path", zones: "zones", flags: "waits, outputs", frames: "frames", labels: "names", robot: "robot", obstacles: "cell", coat: "coat" };
+const OPTIONS = { programmed: "programmed path", zones: "zones", flags: "waits, outputs", frames: "frames", labels: "names", robot: "robot", obstacles: "cell", coat: "coat", swept: "swept space" };
 
 export class Overlay {
   constructor(session, view, host) {

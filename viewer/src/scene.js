@@ -23,6 +23,7 @@ import { columnMajor } from "./kinematics.js";
 import { CoatView } from "./coat.js";
 import { PathView } from "./path.js";
 import { bodyObject } from "./solids.js";
+import { sweptSpace } from "./swept.js";
 import { Veils } from "./veils.js";
 
 export const VIEWS = {
@@ -95,7 +96,7 @@ export class SceneView {
     Object.assign(this, { session, host });
     this.theme = "light";
     this.follow = false;
-    this.show = { zones: true, programmed: true, frames: true, flags: true, labels: true, robot: true, obstacles: true, coat: true };
+    this.show = { zones: true, programmed: true, frames: true, flags: true, labels: true, robot: true, obstacles: true, coat: true, swept: false };
     this.colourBy = "speed";
     this.trace = null;
     this.drawn = 0;
@@ -153,6 +154,7 @@ export class SceneView {
     this.root.add(this.gap, this.tightest);
     this.proof();
     this.coat?.build(this);
+    this.swept = null;
     this.scene.background?.dispose?.();
     this.renderer.setClearColor(BACKGROUND[theme]);
     this.grid();
@@ -247,6 +249,11 @@ export class SceneView {
   }
 
   applyShow() {
+    if (this.show.swept && !this.swept) {
+      this.swept = this.arms.filter((arm) => !arm.ghost).map((arm) => sweptSpace(arm.track, this.plain));
+      this.root.add(...this.swept);
+    }
+    for (const group of this.swept ?? []) group.visible = this.show.swept;
     for (const path of this.paths) path.apply(this.show);
     if (this.coat) this.coat.mesh.visible = this.show.coat;
     for (const { object } of this.frames) object.visible = this.show.frames;

@@ -192,6 +192,15 @@ def test_a_station_runs_on_one_clock(opened: Opened) -> None:
     curve = "flyby.session.tracks[0].channel('between')"
     least = view.evaluate(f"flyby.session.tracks[0].value({curve}, {pair.least_at})")
     assert least == pytest.approx(1e3 * pair.least, abs=10.0)
+    # The space that both sweep is drawn where it is asked for.
+    assert view.evaluate("flyby.view.swept") is None
+    view.locator(".menu summary").click()
+    view.get_by_label("swept space").check()
+    counts = view.evaluate("flyby.view.swept.map((one) => one.children.map((c) => c.count))")
+    assert len(counts) == 2 and all(set(own) == {24} for own in counts)
+    view.get_by_label("swept space").uncheck()
+    assert view.evaluate("flyby.view.swept.map((one) => one.visible)") == [False, False]
+    view.locator(".menu summary").click()
     # A click on a bar goes to its time, its robot and its line; both sources are there.
     (spell,) = schedules["right"].waits
     x, y = view.evaluate("(t) => [flyby.plots.placeOf(t), 2 + 15 * 1.5]", 1.0)
