@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dpotrf, dpotrs
 
 from ...arrays import BoolArray, FloatArray
 from .matrices import SparseMatrix, Sparsity
@@ -45,11 +46,17 @@ class Cholesky:
     """
 
     def __init__(self, array: FloatArray) -> None:
-        self._factor = cho_factor(array, lower=True, check_finite=False)
+        # By columns, which LAPACK takes as they are; the matrix is its own transpose.
+        by_columns = array if array.flags.f_contiguous else array.T
+        self._factor, info = dpotrf(by_columns, lower=True, clean=False)
+        if info:
+            raise LinAlgError(f"pivot {info} is not positive")
 
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution for one right side (n,) or several (n, k)."""
-        return np.asarray(cho_solve(self._factor, right, check_finite=False))
+        if not right.size:
+            return np.zeros_like(right)
+        return np.asarray(dpotrs(self._factor, right, lower=True)[0].reshape(right.shape))
 
 
 def positive_definite(matrix: SparseMatrix) -> bool:

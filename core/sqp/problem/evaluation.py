@@ -23,6 +23,7 @@ GRADIENT_SIZE = 100.0
 """Functions are scaled down so that no gradient entry at the start is larger (Wächter and Biegler,
 "On the implementation of an interior-point filter line-search algorithm", section 3.8)."""
 _LEAST_FACTOR = 1e-8
+_NO_SLOPES, _NO_ROWS = np.zeros(0), empty(0)
 T = TypeVar("T")
 
 
@@ -39,8 +40,8 @@ class Point:
     x: FloatArray
     f: float
     c: FloatArray
-    g: FloatArray = field(default_factory=lambda: np.zeros(0))
-    J: SparseMatrix = field(default_factory=lambda: empty(0))
+    g: FloatArray = field(default_factory=lambda: _NO_SLOPES)
+    J: SparseMatrix = field(default_factory=lambda: _NO_ROWS)
 
 
 class Evaluation:

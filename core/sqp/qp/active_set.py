@@ -18,6 +18,8 @@ from ...arrays import FloatArray
 from ..algebra.linear import Saddle
 from .problem import QpSolution, QpStatus, QuadraticProgram
 
+_MENDED = 60
+"""Wrong sides that one more system may be hoped to mend."""
 _PATIENCE = 3
 _NO_MULTIPLIER = 1e-10
 _LEAP, _ON_THE_WAY = 100.0, 1e-9
@@ -68,7 +70,7 @@ def settled(
     """
     found = before = None
     fewest, patience = np.inf, _PATIENCE
-    for _ in range(systems):
+    for left in range(systems - 1, -1, -1):
         found = _of(qp, guess, saddle)
         if found is None:
             return None
@@ -82,7 +84,7 @@ def settled(
         shown = shown_by(qp, found.d, found.y, found.z)
         wrong = int(np.count_nonzero(shown.sides != guess.sides))
         patience = _PATIENCE if wrong < fewest else patience - 1
-        if not wrong or not patience:
+        if not wrong or not patience or wrong > _MENDED * left:
             break
         fewest = min(fewest, wrong)
         guess = shown

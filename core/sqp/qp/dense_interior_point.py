@@ -17,6 +17,7 @@ from scipy.linalg import LinAlgError
 
 from ...arrays import FloatArray, IntArray
 from ..algebra.dense import Cholesky, array_of
+from ..algebra.matrices import from_scipy
 from .problem import QpSolution, QpStatus, QuadraticProgram, failed
 
 _TO_BOUNDARY = 0.995
@@ -105,8 +106,8 @@ class _Run:
         self.b = (qp.lower - offset)[self.equal]
         self.sides = _sides(qp, self.free, np.flatnonzero(~equal), offset)
         self.rows = np.unique(self.sides.rows)
-        self.A = A[self.rows]
-        self.products = _Products(self.A)
+        self.A = from_scipy(A[self.rows])
+        self.products = _Products(A[self.rows])
         self.of_row = np.searchsorted(self.rows, self.sides.rows)
 
     # ---------------------------------------------------------------- the sides' matrix
@@ -124,7 +125,7 @@ class _Run:
             self.sides.variables, signed[:count], minlength=len(self.free)
         ).astype(np.float64)
         pushed = np.bincount(self.of_row, signed[count:], minlength=len(self.rows))
-        found += np.asarray(self.A.T @ pushed)
+        found += self.A.transposed_times(pushed.astype(np.float64))
         return found
 
     def factorised(self, state: _State) -> _System:
@@ -205,7 +206,7 @@ class _Run:
         if not len(products):
             d, y = system.solve(-left[0], -left[1])
             return _State(state.d + d, state.y + y, state.slack, state.multiplier)
-        step = self._direction(system, state, left, products)
+        step = self._direction(system, state, left, products, exact=False)
         before = float(products.mean())
         length = self._length(state, step)
         after = float(
@@ -231,10 +232,12 @@ class _Run:
         state: _State,
         left: tuple[FloatArray, FloatArray, FloatArray],
         products: FloatArray,
+        exact: bool = True,
     ) -> _State:
         """The step that removes what is left, and lowers the sides' products by ``products``."""
         gain = (state.multiplier * left[2] - products) / state.slack
-        d, y = system.solve(-left[0] - self.back(gain), -left[1])
+        solve = system.solve if exact else system.once
+        d, y = solve(-left[0] - self.back(gain), -left[1])
         slack = -left[2] - self.across(d)
         multiplier = -(products + state.multiplier * slack) / state.slack
         return _State(d, y, slack, multiplier)
@@ -295,12 +298,13 @@ class _System:
 
     def solve(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The solution, refined once: weights of sides span twenty orders near the end."""
-        d, y = self._once(first, second)
+        d, y = self.once(first, second)
         left = first - self._full @ d - self._E.T @ y
-        change, of_y = self._once(left, second - self._E @ d)
+        change, of_y = self.once(left, second - self._E @ d)
         return d + change, y + of_y
 
-    def _once(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def once(self, first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The same unrefined: enough for a step that only says how far the next may go."""
         d = self._matrix.solve(first)
         if self._rows is None:
             return d, np.zeros(0)

@@ -11,8 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numba import njit
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ..algebra.matrices import SparseMatrix
 from .problem import QpSolution, QuadraticProgram
 
@@ -83,12 +84,29 @@ def _largest(
 ) -> tuple[FloatArray, FloatArray]:
     """The largest entries of the columns of P and A (n,) and of the rows of A (m,), scaled."""
     of_P, of_A = qp.P.pattern, qp.A.pattern
-    scaled_P, scaled_A = P * d[of_P.rows] * d[of_P.columns], A * e[of_A.rows] * d[of_A.columns]
     columns, rows = np.zeros(len(d)), np.zeros(len(e))
-    np.maximum.at(columns, of_P.columns, scaled_P)
-    np.maximum.at(columns, of_A.columns, scaled_A)
-    np.maximum.at(rows, of_A.rows, scaled_A)
+    _raise_to_largest(of_P.starts, of_P.rows, P, d, d, columns, np.zeros(len(d)))
+    _raise_to_largest(of_A.starts, of_A.rows, A, e, d, columns, rows)
     return columns, rows
+
+
+@njit(cache=True, error_model="numpy")
+def _raise_to_largest(
+    starts: IntArray,
+    rows: IntArray,
+    data: FloatArray,
+    of_rows: FloatArray,
+    of_columns: FloatArray,
+    columns: FloatArray,
+    across: FloatArray,
+) -> None:
+    """Raise what is known of a matrix's columns, and of its rows (``across``), to its largest
+    entries, scaled."""
+    for j in range(len(columns)):
+        for k in range(starts[j], starts[j + 1]):
+            size = data[k] * of_rows[rows[k]] * of_columns[j]
+            columns[j] = max(columns[j], size)
+            across[rows[k]] = max(across[rows[k]], size)
 
 
 def _alike(sizes: FloatArray) -> bool:
