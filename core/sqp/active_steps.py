@@ -11,15 +11,13 @@ from collections.abc import Callable
 import numpy as np
 
 from ..arrays import FloatArray
-from .algebra.linear import Saddle, SaddlePatterns
+from .algebra.linear import Saddle
 from .algebra.matrices import SparseMatrix
 from .best import Best
+from .given import Given
 from .problem.errors import CallableError
 from .problem.evaluation import Point
-from .problem.hessians import HessianSource
 from .problem.optimality import OptimalityResiduals
-from .problem.scaled import ScaledProblem
-from .progress import SolutionProgress
 from .qp.active_set import WorkingSet, settled, shown_by
 from .qp.problem import QuadraticProgram
 
@@ -40,11 +38,7 @@ class ActiveSteps:
     """Steps to solutions.
 
     Args:
-        problem: the problem.
-        hessian: of its Lagrangian.
-        patterns: keeps symbolic factorisations.
-        progress: judges.
-        tolerance: of the residuals, unscaled.
+        given: of the solution.
         steps: at most.
         reach: largest change of a variable, in its size.
         systems: how often a step's active set may change.
@@ -53,21 +47,17 @@ class ActiveSteps:
 
     def __init__(
         self,
-        problem: ScaledProblem,
-        hessian: HessianSource,
-        patterns: SaddlePatterns,
-        progress: SolutionProgress,
-        tolerance: float,
+        given: Given,
         steps: int = _STEPS,
         reach: float = _NEAR,
         systems: int = _SYSTEMS,
         gain: float = _LEAST_GAIN,
     ) -> None:
-        self._problem = problem
-        self._hessian = hessian
-        self._saddle = Saddle(patterns, _REGULARISATION)
-        self._progress = progress
-        self._tolerance = tolerance
+        self._problem = given.problem
+        self._hessian = given.hessian
+        self._saddle = Saddle(given.workspace.saddles, _REGULARISATION)
+        self._progress = given.progress
+        self._tolerance = given.options.tolerance
         self._steps, self._reach, self._systems = steps, reach, systems
         self._gain = gain
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
 from .algebra.dense import LEAST_SIZE, is_dense
+from .given import Given
 from .interior_point.solution import InteriorSolution
 from .methods import SolverMethod, chosen
 from .options import Callback, Options, StepBox, start_point
@@ -126,20 +128,20 @@ class _Solution:
 
     def _iterate(self, point: Point) -> Ending:
         """Iterate until the end, which is an exception."""
-        rest = self._workspace, self._options, self._progress
-        parts = self._problem, self._hessian, *rest
+        of_solution = self._workspace, self._options, self._progress
+        given = Given(self._problem, self._hessian, *of_solution)
         if self._first is SolverMethod.INTERIOR_POINT and not self._full(point):
             self._used.append(SolverMethod.INTERIOR_POINT)
-            InteriorSolution(*parts).run(point)
+            InteriorSolution(given).run(point)
             self._progress.iterations += 1
             best = self._progress.best  # it gave up: the other method goes on, or says why not
             self._used.append(SolverMethod.SQP)
-            hessian = self._hessian
-            if isinstance(hessian, LimitedMemory):
-                hessian = make_source(full_or_sparse(self._nlp), self._problem.evaluation)
-            Sequential(self._problem, hessian, *rest).go_on(best.point, best.multipliers, point)
+            if isinstance(self._hessian, LimitedMemory):
+                kind = full_or_sparse(self._nlp)
+                given = replace(given, hessian=make_source(kind, self._problem.evaluation))
+            Sequential(given).go_on(best.point, best.multipliers, point)
         self._used.append(SolverMethod.SQP)
-        Sequential(*parts).run(point)
+        Sequential(given).run(point)
         raise AssertionError("methods end by an exception")
 
     def _full(self, point: Point) -> bool:

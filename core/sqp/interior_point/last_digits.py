@@ -10,12 +10,9 @@ import numpy as np
 from numba import njit
 
 from ..active_steps import ActiveSteps
-from ..algebra.linear import SaddlePatterns
 from ..algebra.matrices import LowRankSum, SparseMatrix
 from ..best import Best
-from ..problem.hessians import HessianSource
-from ..problem.scaled import ScaledProblem
-from ..progress import SolutionProgress
+from ..given import Given
 from ..qp.active_set import WorkingSet
 from .iterate import InteriorIterate, InteriorLimits
 from .newton import Place
@@ -27,28 +24,13 @@ set is not worth trying."""
 
 
 class LastDigits:
-    """Steps to solutions.
+    """Steps to solutions."""
 
-    Args:
-        problem: the problem.
-        hessian: of its Lagrangian.
-        patterns: keeps symbolic factorisations.
-        progress: judges.
-        tolerance: of the residuals, unscaled.
-    """
-
-    def __init__(
-        self,
-        problem: ScaledProblem,
-        hessian: HessianSource,
-        patterns: SaddlePatterns,
-        progress: SolutionProgress,
-        tolerance: float,
-    ) -> None:
-        self._problem = problem
-        self._steps = ActiveSteps(problem, hessian, patterns, progress, tolerance)
-        self._progress = progress
-        self._tolerance = tolerance
+    def __init__(self, given: Given) -> None:
+        self._problem = given.problem
+        self._steps = ActiveSteps(given)
+        self._progress = given.progress
+        self._tolerance = given.options.tolerance
 
     def of(self, place: Place, box: InteriorLimits, H: SparseMatrix) -> Best | None:
         """The solution near a place; None where the active set that it shows leads to none.

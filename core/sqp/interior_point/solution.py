@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..options import Options
+from ..given import Given
 from ..problem.evaluation import Point
-from ..problem.hessians import HessianSource
-from ..problem.scaled import ScaledProblem
-from ..progress import SolutionProgress
-from ..workspace import Workspace
 from .barrier import Barrier
 from .functions import UserFunctions
 from .last_digits import LastDigits
@@ -32,35 +28,20 @@ _FAR = 1e8
 
 
 class InteriorSolution:
-    """One solution.
+    """One solution."""
 
-    Args:
-        problem: the problem, whose scale is chosen.
-        hessian: of its Lagrangian.
-        workspace: what is kept from one solution to the next.
-        options: of the solution.
-        progress: takes note of what is done.
-    """
-
-    def __init__(
-        self,
-        problem: ScaledProblem,
-        hessian: HessianSource,
-        workspace: Workspace,
-        options: Options,
-        progress: SolutionProgress,
-    ) -> None:
-        self._problem = problem
-        self._hessian = hessian
-        self._patterns = workspace.saddles
-        self._progress = progress
-        self._tolerance = options.tolerance
-        self._digits = LastDigits(problem, hessian, self._patterns, progress, options.tolerance)
+    def __init__(self, given: Given) -> None:
+        self._problem = given.problem
+        self._hessian = given.hessian
+        self._patterns = given.workspace.saddles
+        self._progress = given.progress
+        self._tolerance = given.options.tolerance
+        self._digits = LastDigits(given)
         self._try_at = _TRIED_FROM
         self._before: Point | None = None
         self._least = np.inf
         self._idle = 0
-        self._last = int(_SHARE * options.max_iterations)
+        self._last = int(_SHARE * given.options.max_iterations)
 
     def run(self, point: Point) -> None:
         """Begin at a point with derivatives; returns where the method gives up.

@@ -7,28 +7,18 @@ import numpy as np
 from ...arrays import FloatArray
 from ..active_steps import ActiveSteps
 from ..algebra.dense import is_dense
-from ..options import Options
+from ..given import Given
 from ..problem.evaluation import Point
-from ..problem.hessians import HessianSource
 from ..problem.optimality import OptimalityResiduals
 from ..problem.scaled import ScaledProblem
-from ..progress import SolutionProgress
 from ..qp.active_set import WorkingSet
 from ..result import Result
-from ..workspace import Workspace
 
 _STEPS, _SYSTEMS, _REACH, _GAIN = 8, 8, 2.0, 10.0
 _NO_MULTIPLIER = 1e-8
 
 
-def hot_started(
-    point: Point,
-    problem: ScaledProblem,
-    hessian: HessianSource,
-    workspace: Workspace,
-    options: Options,
-    progress: SolutionProgress,
-) -> None:
+def hot_started(point: Point, given: Given) -> None:
     """Try Newton's steps from a warm start's active set; returns where they lead to no solution.
 
     A step counts only where the Lagrangian curves upwards along what is active, so that no maximum
@@ -36,22 +26,21 @@ def hot_started(
 
     Args:
         point: where it begins, with derivatives.
-        problem, hessian, workspace, options, progress: of the solution.
 
     Raises:
         SolutionEnd: the solution ends.
         CallableError: the Hessian has no value.
     """
+    problem, options, progress = given.problem, given.options, given.progress
     warm = options.warm_start
-    if warm is None or options.step_box is not None or not hessian.measured:
+    if warm is None or options.step_box is not None or not given.hessian.measured:
         return
     if len(warm.multipliers) != problem.nlp.m or len(warm.bound_multipliers) != problem.nlp.n:
         return
-    known = workspace.hessian.known
+    known = given.workspace.hessian.known
     if known is not None and is_dense(known):
         return  # a step would cost as much as an iteration
-    limits = _STEPS, _REACH, _SYSTEMS, _GAIN
-    steps = ActiveSteps(problem, hessian, workspace.saddles, progress, options.tolerance, *limits)
+    steps = ActiveSteps(given, _STEPS, _REACH, _SYSTEMS, _GAIN)
 
     def visited(at: Point, multipliers: FloatArray) -> OptimalityResiduals | None:
         if not steps.convex:

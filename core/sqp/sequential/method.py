@@ -18,15 +18,12 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..filter import Filter
-from ..options import Options
+from ..given import Given
 from ..problem.evaluation import Point
-from ..problem.hessians import HessianSource
 from ..problem.optimality import OptimalityResiduals
-from ..problem.scaled import ScaledProblem
-from ..progress import SolutionEnd, SolutionProgress
+from ..progress import SolutionEnd
 from ..qp.problem import QpSolution
 from ..verdict import Ending, nothing_to_gain
-from ..workspace import Workspace
 from .feasibility import Feasibility, NowhereError
 from .hot_start import hot_started
 from .model import Model
@@ -44,31 +41,17 @@ _ROUNDING = 1e-12
 
 
 class Sequential:
-    """One solution.
+    """One solution."""
 
-    Args:
-        problem: the problem, whose scale is chosen.
-        hessian: of its Lagrangian.
-        workspace: what is kept from one solution to the next.
-        options: of the solution.
-        progress: takes note of what is done.
-    """
-
-    def __init__(
-        self,
-        problem: ScaledProblem,
-        hessian: HessianSource,
-        workspace: Workspace,
-        options: Options,
-        progress: SolutionProgress,
-    ) -> None:
-        self.nlp = problem.nlp
-        self.options = options
-        self.workspace = workspace
-        self.problem = problem
-        self.hessian = hessian
-        self.progress = progress
-        self.model = Model(problem, hessian, workspace, options.step_box, options.tolerance)
+    def __init__(self, given: Given) -> None:
+        self.given = given
+        self.nlp = given.problem.nlp
+        self.options = given.options
+        self.workspace = given.workspace
+        self.problem = given.problem
+        self.hessian = given.hessian
+        self.progress = given.progress
+        self.model = Model(given)
         self.stalls = 0
         self.failures = 0
         self.restarts = 0
@@ -139,7 +122,7 @@ class Sequential:
         while True:
             at = self._visit(point, length, kind)
             if not kind and not self.progress.iterations:
-                self._hot_start(point)
+                hot_started(point, self.given)
             step = self._step(point, at)
             old, point = point, step.point
             length, kind = step.length, step.kind
@@ -149,10 +132,6 @@ class Sequential:
             still = size <= _ROUNDING * max(1.0, float(np.abs(point.x).max()))
             self.stalls = self.stalls + 1 if still else 0
             self.progress.iterations += 1
-
-    def _hot_start(self, point: Point) -> None:
-        progress, options = self.progress, self.options
-        hot_started(point, self.problem, self.hessian, self.workspace, options, progress)
 
     def _visit(self, point: Point, length: float, kind: str) -> OptimalityResiduals:
         return self.progress.visit(point, self.multipliers, length, kind, self.model.shift)

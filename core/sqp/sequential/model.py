@@ -8,14 +8,12 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..filter import NO_VIOLATION
-from ..options import StepBox, box_limits
+from ..given import Given
+from ..options import box_limits
 from ..problem import violation
 from ..problem.evaluation import Point
-from ..problem.hessians import HessianSource
 from ..problem.optimality import at_bounds, bound_multipliers, lagrangian_slope
-from ..problem.scaled import ScaledProblem
 from ..qp.problem import QpSolution, QpStatus, QuadraticProgram, in_units
-from ..workspace import Workspace
 from .convexify import ActiveSet, ConvexModel, raised
 from .damping import Damping
 
@@ -37,31 +35,18 @@ class NoSubproblemError(RuntimeError):
 class Model:
     """Models of one solution, and what they learn from each other.
 
-    Args:
-        problem: the problem.
-        hessian: of its Lagrangian.
-        workspace: what solves its parts.
-        step_box: the user's limits of steps.
-        tolerance: violation that counts as none.
-
     Attributes:
         radius: largest change of a variable in its own size; infinite while steps succeed.
         shift: what the last Hessian's diagonal was raised by.
     """
 
-    def __init__(
-        self,
-        problem: ScaledProblem,
-        hessian: HessianSource,
-        workspace: Workspace,
-        step_box: StepBox | None,
-        tolerance: float,
-    ) -> None:
+    def __init__(self, given: Given) -> None:
+        problem, workspace = given.problem, given.workspace
         self._problem = problem
-        self._hessian = hessian
+        self._hessian = given.hessian
         self._subproblems = workspace.subproblems
-        self._step_box = step_box
-        self._tolerance = tolerance
+        self._step_box = given.options.step_box
+        self._tolerance = given.options.tolerance
         self._convexifier = workspace.convexifier
         self._elastic = workspace.elastic
         self._price = _FIRST_PRICE
