@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import codecs
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import current_thread, main_thread
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -13,6 +17,11 @@ from ...core.source.patch.edits import difference
 from ...core.source.reading import Reading
 from ..hostile import SIGNS, hostile_texts, hostile_variants
 from .subject import EXAMPLES, PROGRAM_EXAMPLES, Subject
+
+LONGEST = 20.0
+"""s of the processor that a text may be read for. In the languages that come with flyby the longest
+takes .2 s, of a million signs."""
+_SHOWN = 60
 
 
 class HostilityChecks(Subject):
@@ -82,7 +91,8 @@ class HostilityChecks(Subject):
 
     def _read_or_refuse(self, text: str, file: str) -> None:
         try:
-            program = self.vendor.read(text, file)
+            with _at_most(LONGEST, f"{self.name}: {_shown(text)} is read for"):
+                program = self.vendor.read(text, file)
         except SourceError as error:
             assert str(error)
             assert error.span is None or error.span.line >= 1
@@ -90,6 +100,37 @@ class HostilityChecks(Subject):
             assert str(error)
         else:
             assert isinstance(program, Program)
+
+
+@contextmanager
+def _at_most(seconds: float, what: str) -> Iterator[None]:
+    """Fail what takes more of the processor than this: a pattern that tries everything never ends.
+
+    Where the system counts no time of processes, or elsewhere than in the main thread, nothing is
+    bounded.
+    """
+    if not hasattr(signal, "setitimer") or current_thread() is not main_thread():
+        yield
+        return
+
+    def stop(*_: object) -> None:
+        raise AssertionError(
+            f"{what} more than {seconds:g} s of the processor: bound the lengths of lines, and "
+            "what patterns may try"
+        )
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
+def _shown(text: str) -> str:
+    said = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}… ({len(text)} signs)"
+    return repr(said)
 
 
 def _after_first_line(text: str, line: bytes) -> bytes:

@@ -18,6 +18,7 @@ from flyby.core.program.program import Program
 from flyby.core.registry import find_vendor
 from flyby.core.robot.joint import JointLimits
 from flyby.core.vendor import Vendor
+from flyby.testing.checks import hostility
 from flyby.testing.conformance import VendorConformance
 
 from ..vendors.words import AbbWords
@@ -137,3 +138,18 @@ def test_importing_the_plugins_is_light() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == []
+
+
+class Endless(Reader):
+    """A reader whose pattern tries everything."""
+
+    def read(self, text: str, file: str, options: Any) -> Program:
+        re.fullmatch(r"(a+)+b", "a" * 60)
+        raise AssertionError("nobody waits for this")
+
+
+def test_a_reader_that_never_ends_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(hostility, "LONGEST", 0.2)
+    vendor = replace(SOUND, reader=Endless(None), speaks=None)
+    with pytest.raises(AssertionError, match=r"is read for more than 0\.2 s of the processor"):
+        run(vendor, "test_the_reader_survives_hostile_texts")
