@@ -1,6 +1,6 @@
 """How well fitted motion models predict logged runs that had no part in the fit.
 
-    FLYBY_LOGS=… python benchmarks/identification.py [--json] [--case table] [--folds 6]
+    FLYBY_LOGS=… python benchmarks/identification.py [--json] [--case table-studio] [--folds 6]
 
 FLYBY_LOGS names a folder of records of runs (see `flyby.identification.logs`). Each run is a case:
 greatest distance and 99 % of the log's samples from the emulated path of the TCP (``path_max_mm``,
@@ -19,15 +19,17 @@ logged time in motion (``cycle_time_ratio``). Which fit predicts a run depends o
 Stamps of virtual controllers are put right by the clock that the fit to the *other* runs found, as
 peer ``clock`` says. Runs whose speeds nobody recorded have no figures of time.
 
-``table`` sums up by classes of speed and of moves: medians and the worst of the greatest distance
-from the path, of how far cycle times are off, and of joints at their time; peer ``goal``. The
-lesson's runs are left out by kinds there, not one by one: all runs of one program at one speed
-together, kinds dealt out to ``--folds`` fits to the others. Those of other sources are predicted as
-the vendor's files say; those whose zones nobody recorded by the factor that fits all of their
-corners, so that this is read off the log it is judged by. ``--folds 0`` fits nothing: the lesson is
-predicted by the shipped figures, which it may have had part in. Runs whose record states neither
-zones nor speeds are in two lines, as recorded and ``as driven``, with both as the log and the
-source's notes show them (`AS_DRIVEN`).
+``table-…`` sum up the runs of a source by classes of speed and of moves: medians and the worst of
+the greatest distance from the path, of how far cycle times are off, and of joints at their time;
+peer ``goal``. The lesson's runs are left out by kinds there, not one by one: all runs of one
+program at one speed together, kinds dealt out to ``--folds`` fits to the others. Those of other
+sources are predicted as the vendor's files say; those whose zones nobody recorded by the factor
+that fits all of their corners, so that this is read off the log it is judged by. ``--folds 0`` fits
+nothing: the lesson is predicted by the shipped figures, which it has had part in, and its lines say
+so. Runs whose record states neither zones nor speeds are in two lines, as recorded and ``as
+driven``, with both as the log and the source's notes show them (`AS_DRIVEN`). Those of a real robot
+are in two lines as well: as its type is driven, and with ``own servos``, which `flyby identify`
+fits of one robot, fitted to its other runs, left out by kinds likewise.
 
 ``kuka-filters`` has the greatest distance from the path of each run of the KR 3 by the length of
 the filter (two averages over half of it), and, as peer ``left out``, with the length that the other
@@ -46,7 +48,7 @@ import re
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -60,6 +62,8 @@ from flyby.core.program.zone import FINE, ContourFraction, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit import Fit, ParameterSet, PreparedRun, fit, prepare
 from flyby.identification.fit.emulation import Nuisance
+from flyby.identification.fit.holding import FIRST, evened
+from flyby.identification.fit.layers import servo_parameters
 from flyby.identification.fit.minimum import minimise
 from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
@@ -76,6 +80,7 @@ WORKERS = 2
 Goals = tuple[float | None, float | None]
 """Of the median and of the worst."""
 ROUGH = 1.25
+TABLE = "table-"
 
 
 @dataclass(frozen=True)
@@ -276,6 +281,7 @@ class RunClass:
         cycle: of how far cycle times are off, in percent, median and worst.
         joints: of joints at their time, in degrees, median and worst.
         as_driven: whether zones and speeds are those of `AS_DRIVEN`, not of the record.
+        own_servos: whether the robot's servos are fitted to its other runs.
     """
 
     folder: str
@@ -284,6 +290,7 @@ class RunClass:
     cycle: Goals = (None, None)
     joints: Goals = (None, None)
     as_driven: bool = False
+    own_servos: bool = False
 
 
 CYCLE, REAL_CYCLE = (0.5, 3.0), (1.0, 5.0)
@@ -297,6 +304,15 @@ CLASSES = {
     "real-500": RunClass(REAL, "__v[35]0?0_", (0.2, None), REAL_CYCLE, (0.1, 0.1)),
     "real-1000": RunClass(REAL, "__v1000_", (0.6, None), REAL_CYCLE, (0.1, 0.1)),
     "real-vmax": RunClass(REAL, "__vmax_", (1.0, None), REAL_CYCLE, (0.3, 0.3)),
+    "real-500, own servos": RunClass(
+        REAL, "__v[35]0?0_", (0.2, None), REAL_CYCLE, (0.1, 0.1), own_servos=True
+    ),
+    "real-1000, own servos": RunClass(
+        REAL, "__v1000_", (0.6, None), REAL_CYCLE, (0.1, 0.1), own_servos=True
+    ),
+    "real-vmax, own servos": RunClass(
+        REAL, "__vmax_", (1.0, None), REAL_CYCLE, (0.3, 0.3), own_servos=True
+    ),
     "ursim-movel": RunClass("ur10e_ursim", "^lin", (0.01, None), as_driven=True),
     "ursim-movel, as recorded": RunClass("ur10e_ursim", "^lin"),
     "ursim-movej": RunClass("ur10e_ursim", "^ptp", (0.05, None), as_driven=True),
@@ -308,24 +324,29 @@ CLASSES = {
 
 
 def table(case: str, folds: int) -> Iterator[Figure]:
-    """Medians and worst of classes of runs."""
-    if folds:
+    """Medians and worst of the classes of one source."""
+    wanted = case.removeprefix(TABLE)
+    if folds and wanted == "studio":
         yield Figure(case, "folds", folds, "", "runs in the lesson", len(lesson(ABB)))
     for name, one in CLASSES.items():
+        if not name.startswith(f"{wanted}-") or (one.own_servos and not folds):
+            continue
         chosen = [
             path
             for path in CASES.values()
             if path.parent.name == one.folder and re.search(one.names, path.stem)
         ]
-        made = [held_back(path, folds, one.as_driven) for path in chosen]
+        made = [held_back(path, folds, one) for path in chosen]
         timed = [
             found.figures
             for found, path in zip(made, chosen, strict=True)
             if not prepared(path).by_place
         ]
-        yield Figure(case, f"{name}: runs", len(made), "")
+        known = wanted == "studio" and not folds
+        yield Figure(case, f"{name}: runs{' in the fit' if known else ''}", len(made), "")
         for what, unit, values, goals in (
             ("path_max", "mm", [1e3 * found.figures.path_max for found in made], one.path),
+            ("path_p99", "mm", [1e3 * found.figures.path_p99 for found in made], (None, None)),
             ("cycle_off", "%", [1e2 * abs(f.cycle_time_ratio - 1) for f in timed], one.cycle),
             ("joint_p99", "deg", [np.degrees(f.joint_time_p99) for f in timed], one.joints),
         ):
@@ -335,10 +356,13 @@ def table(case: str, folds: int) -> Iterator[Figure]:
                     yield Figure(case, f"{name}: {what} {how}", float(of(values)), unit, told, goal)
 
 
-def held_back(path: Path, folds: int, as_driven: bool = False) -> Prediction:
+def held_back(path: Path, folds: int, one: RunClass) -> Prediction:
     """A run as figures predict it that it had no part in, as far as there are such."""
-    run = prepared(path, as_driven)
+    run = prepared(path, one.as_driven)
     robot = run.robot.name
+    if one.own_servos:
+        model, _ = servos_by_kinds(robot, folds)[path.stem]
+        return by_model(run, model)
     if folds and run in lesson(robot):
         model, own = by_kinds(robot, folds)[path.stem]
         return predicted(run, model, own)
@@ -376,13 +400,29 @@ def kuka_filters(case: str) -> Iterator[Figure]:
 @cache
 def by_kinds(robot: str, folds: int) -> dict[str, tuple[MotionModel, Nuisance]]:
     """Of each run of the lesson, a model that was fitted without its kind, and what is its own."""
-    known = lesson(robot)
+    return without_kinds(lesson(robot), parameters(robot), folds)
+
+
+@cache
+def servos_by_kinds(robot: str, folds: int) -> dict[str, tuple[MotionModel, Nuisance]]:
+    """The same of the runs of a real robot, with figures of its servos."""
+    base = parameters(robot).base
+    known = [prepared(path) for path in files()[robot] if path.parent.name == REAL]
+    runs, first = evened(base, known, WORKERS)
+    wanted = ParameterSet.named(base, servo_parameters(base, find_robot(robot)))
+    return without_kinds(runs, replace(wanted, hold=FIRST * first), folds)
+
+
+def without_kinds(
+    known: Sequence[PreparedRun], wanted: ParameterSet, folds: int
+) -> dict[str, tuple[MotionModel, Nuisance]]:
+    """Of each run a model that was fitted without its kind, and what is its own."""
     kinds = [run.name.rpartition("_")[0] for run in known]
     fold = {kind: k % folds for k, kind in enumerate(sorted(set(kinds)))}
     groups = [tuple(k for k, kind in enumerate(kinds) if fold[kind] == f) for f in range(folds)]
     begin = first_nuisances(known)
     made: dict[str, tuple[MotionModel, Nuisance]] = {}
-    for left in leave_out(known, begin, parameters(robot), groups, WORKERS):
+    for left in leave_out(known, begin, wanted, [one for one in groups if one], WORKERS):
         for k, own in zip(left.indices, left.nuisances, strict=True):
             made[known[k].name] = left.model, own
     return made
@@ -414,7 +454,7 @@ def _cpu() -> float:
 
 def measure(case: str, folds: int) -> Iterator[Figure]:
     """Figures of one case."""
-    if case == "table":
+    if case.startswith(TABLE):
         return table(case, folds)
     if case == "kuka-filters":
         return kuka_filters(case)
@@ -425,5 +465,6 @@ if __name__ == "__main__":
     CASES = {
         f"{path.parent.name}/{path.stem}": path for paths in files().values() for path in paths
     }
-    sums = ["table", "kuka-filters", "fit-abb"] if CASES else []
+    tables = dict.fromkeys(TABLE + name.partition("-")[0] for name in CLASSES)
+    sums = [*tables, "kuka-filters", "fit-abb"] if CASES else []
     main(__doc__ or "", measure, [*sums, *CASES], sums, folds=6)

@@ -111,7 +111,8 @@ class Rows:
 
 
 class RunEmulator:
-    """Emulates one run again and again.
+    """Emulates one run again and again; what the model asked for last has in common with the next
+    is not done again.
 
     Args:
         prepared: the run.
@@ -119,6 +120,7 @@ class RunEmulator:
 
     def __init__(self, prepared: PreparedRun) -> None:
         self.prepared = prepared
+        self._latest: _Stages | None = None
 
     def residuals(self, model: MotionModel, nuisance: Nuisance) -> FloatArray:
         """(K, M), weighted.
@@ -126,8 +128,7 @@ class RunEmulator:
         Raises:
             FlybyError: the program cannot be driven so.
         """
-        stages = self._stages(model, nuisance, None)
-        return self._weighted(self._off(stages, model, nuisance))
+        return self._weighted(self._off(self._emulated(model, nuisance), model, nuisance))
 
     def rows(self, parameters: ParameterSet, values: FloatArray, nuisance: Nuisance) -> Rows:
         """Residuals and derivatives.
@@ -141,7 +142,7 @@ class RunEmulator:
             FlybyError: the program cannot be driven so.
         """
         model = parameters.model(values)
-        stages = self._stages(model, nuisance, None)
+        stages = self._emulated(model, nuisance)
         off = self._off(stages, model, nuisance)
         base = _Base(model, stages, nuisance, off, self._moments(stages, nuisance))
         columns = [self._by_parameter(parameters, values, k, base) for k in range(parameters.size)]
@@ -220,6 +221,11 @@ class RunEmulator:
         changed = replace(base.nuisance, override=base.nuisance.override - step)
         made = self._stages(base.model, changed, base.stages)
         return np.asarray((base.off - self._off(made, base.model, changed)) / step)
+
+    def _emulated(self, model: MotionModel, own: Nuisance) -> _Stages:
+        """What a command needs, kept for the next."""
+        self._latest = self._stages(model, own, self._latest)
+        return self._latest
 
     def _stages(self, model: MotionModel, own: Nuisance, known: _Stages | None) -> _Stages:
         """What a command needs, taken from what is known as far as the models agree."""

@@ -16,6 +16,7 @@ from ...core.arrays import FloatArray
 from ...core.errors import FlybyError, InputError
 from ...core.motion.model.motion_model import MotionModel
 from ...core.motion.model.rules import ArcTurn
+from .balanced_gears import begun_again
 from .clocks import timed, told
 from .emulation import Nuisance, Rows
 from .intervals import SEEN, Interval, Unseen, clusters_of, intervals, loose, unseen
@@ -143,7 +144,7 @@ def fit_with(
         before = first.last
         while found := _seen_at(pool, kept, first.nuisances):
             kept = _without(kept, found, lost)
-        end = minimise(pool, kept, first.nuisances, watch)
+        end = begun_again(pool, kept, minimise(pool, kept, first.nuisances, watch), watch)
     else:
         before, begin = near.before, kept.starting_at(near.values)
         end = minimise(pool, begin, near.nuisances, watch, near.rows)

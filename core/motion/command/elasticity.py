@@ -190,6 +190,13 @@ def _gears(
     return given, used
 
 
+def held_at_rest(elasticity: Elasticity, robot: Robot, q: FloatArray) -> FloatArray:
+    """What gears hold at rest in configurations (T, N), and give way by where they have slack: (T,
+    N) in rad or m."""
+    still = np.zeros_like(q)
+    return _gears(elasticity, robot, q, still, still)[1]
+
+
 def links_of(elasticity: Elasticity, states: States, jerk: FloatArray) -> States:
     """What links do where the smoothed motion has states and a third derivative (T, N)."""
     q, dq, ddq = states

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
@@ -184,3 +184,23 @@ def test_a_figure_that_explains_the_logs_earns_its_place() -> None:
     # Corners that bulge are seen by runs of other zones; the lead was right before.
     assert without_beta.mean > 5 * both.mean and without_beta.gain < -2 * without_beta.error
     assert without_own.mean == pytest.approx(both.mean, rel=0.2)
+
+
+MODELS = (
+    TRUTH,
+    replace(TRUTH, elasticity=START.elasticity),
+    replace(TRUTH, joint_acceleration_scale=(0.8,) * ROBOT.arm_size),
+    replace(TRUTH, smoothing=(0.03, 0.05)),
+    replace(TRUTH, tcp=START.tcp),
+)
+OWN = (Nuisance(0.04), Nuisance(0.05, 1.01), Nuisance(0.04, 1.0, 0.8), Nuisance(0.04, override=0.9))
+
+
+@settings(max_examples=15)
+@given(st.lists(st.tuples(st.sampled_from(MODELS), st.sampled_from(OWN)), min_size=2, max_size=5))
+def test_what_was_asked_for_before_changes_nothing(run, asked) -> None:
+    """What is kept of one emulation enters the next only where both agree."""
+    used = RunEmulator(run)
+    for model, own in asked:
+        found = used.residuals(model, own)
+    np.testing.assert_array_equal(found, RunEmulator(run).residuals(model, own))
