@@ -142,9 +142,13 @@ def parameters(robot: str) -> ParameterSet:
     return ParameterSet.named(model, fitted_before(model))
 
 
-@cache
 def prepared(path: Path, as_driven: bool = False) -> PreparedRun:
-    """A run, laid on what is emulated today."""
+    """A run, laid on what is emulated today; the same one, however it is asked for."""
+    return _prepared(path, as_driven)
+
+
+@cache
+def _prepared(path: Path, as_driven: bool) -> PreparedRun:
     return laid_on(path, as_driven, parameters(loaded(path, as_driven).robot).base)
 
 

@@ -27,6 +27,8 @@ SKIPPED = 0.1
 SLOWEST, FASTEST = 0.02, 50.0
 """Emulated over logged time beyond which no override explains it."""
 _BETTER = 5.0
+_FEW = 500
+"""Samples that a reason is looked for with, about."""
 _RADIANS = (
     "it fits if its joints are in radians and were taken for degrees: say unit = "
     '"rad" in a file of columns'
@@ -105,6 +107,9 @@ def _reason(robot: Robot, trajectory: Trajectory, q: FloatArray) -> str:
     """What would make the log fit, or where it is worst."""
     path = trajectory.q_motor
     tree = cKDTree(path)
+    # Far from a path the nearest place is searched for long, and medians ask for few samples.
+    ranges = np.stack([q.min(axis=0), q.max(axis=0)])
+    q = q[:: max(len(q) // _FEW, 1)]
     near = _typical(tree, q)
     # A log that is scaled down hardly moves, and may do so near the path.
     moves = _reach(np.radians(q)) > 0.5 * _reach(path)
@@ -128,11 +133,11 @@ def _reason(robot: Robot, trajectory: Trajectory, q: FloatArray) -> str:
             return f"it fits if the columns of {robot.axis_names[one]} and " + (
                 f"{robot.axis_names[other]} are exchanged"
             )
-    below = np.maximum(path.min(axis=0) - q.max(axis=0), q.min(axis=0) - path.max(axis=0))
+    below = np.maximum(path.min(axis=0) - ranges[1], ranges[0] - path.max(axis=0))
     worst = int(np.argmax(below))
     if below[worst] > 0:
         return (
-            f"{robot.axis_names[worst]} runs from {_span(q[:, worst])} in the log and from "
+            f"{robot.axis_names[worst]} runs from {_span(ranges[:, worst])} in the log and from "
             f"{_span(path[:, worst])} in the program: another robot, program, start or tool"
         )
     return "another robot, program, start or tool, or a log of several runs"
