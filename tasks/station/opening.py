@@ -15,6 +15,7 @@ from .names import check_names
 if TYPE_CHECKING:
     from ...core.dialect import SignalWords
     from ...core.program.program import Program
+    from ...core.robot.model import Robot
     from ...core.source.reading import Reading
     from ...core.source.text.files import SourceFile
     from ...core.station.actions import Action
@@ -301,11 +302,20 @@ def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]
     return StationRobot(member.name, program, controller, cell, run, member.begins), setup
 
 
+def _foot(robot: Robot) -> tuple[float, float, float]:
+    """Where a robot's first axis stands on the level of its base, m in the world: two arms on one
+    body share a base."""
+    from ...core.spatial.pose import Pose
+
+    x, y, _ = robot.joints[robot.along[0]].placement.position
+    return (robot.base @ Pose((x, y, 0.0))).position
+
+
 def _check_starts(file: StationFile, members: dict[str, StationRobot]) -> None:
     """No two robots stand in one place."""
     import numpy as np
 
-    places = {name: np.asarray(member.cell.robot.base.position) for name, member in members.items()}
+    places = {name: np.array(_foot(member.cell.robot)) for name, member in members.items()}
     names = list(places)
     for k, one in enumerate(names):
         for other in names[k + 1 :]:

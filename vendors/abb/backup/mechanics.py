@@ -20,6 +20,7 @@ from ....core.door import called
 from ....core.errors import InputError
 from ....core.robot.joint import CoupledRange, ExternalAxis, Joint
 from ....core.robot.model import STANDARD_GRAVITY, Robot
+from ....core.robot.seven_axes.arm_angle import AXES
 from ....core.spatial.pose import IDENTITY, Pose
 from ....core.spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
 from .arms import FindRobot, agreeing, find_arm
@@ -31,6 +32,9 @@ _SAME = 1e-3
 _COUPLED = "lower_joint_coupl_bound", "upper_joint_coupl_bound"
 _BETWEEN_ARMS = "the angle between upper arm and forearm"
 """What bounds of neighbouring axes limit; the type's doubt about it begins so."""
+_TWO_ARMED = "14000"
+_SIDES = {"r": "right", "l": "left"}
+"""By the ends of its arms' names."""
 _LONGEST = 1e3
 """rad or m: a range beyond it is none."""
 
@@ -80,8 +84,9 @@ def mechanics_of(
             f"conveyors are not driven: {listed(conveyors(moc))}; what lies on one is taken to "
             "stand still"
         )
+    own = {f"{_folded(arm.name)}{AXES}" for arm in arms}
     carrying = {(arm.text("base_frame_coordinated") or "").casefold() for arm in arms} - {""}
-    units = units_of(moc, carrying)
+    units = [unit for unit in units_of(moc, carrying) if _folded(unit.single.name) not in own]
     owned = {arm.name: _own(arm, units, groups, len(arms) == 1) for arm in arms}
     robots = tuple(_robot(moc, arm, products, owned[arm.name], find_robot, notes) for arm in arms)
     taken = {unit.name for own in owned.values() for unit in own}
@@ -97,15 +102,23 @@ def _is_arm(record: Record) -> bool:
 def _of_products(products: Sequence[str], find_robot: FindRobot) -> tuple[BackupRobot, ...]:
     """Arms by the controller's products alone."""
     robots = []
-    for number, product in enumerate(products or [""], 1):
+    named = [one for product in products or [""] for one in _arms_of(product, len(products))]
+    for number, (name, product) in enumerate(named, 1):
         found = find_arm("", [product] if product else [], find_robot)
         lacks = [found.lack] if found.lack else []
         lacks.append(
             "MOC.cfg, which has ranges, base and external axes, cannot be read: those of the type "
             "are taken, in the world's origin"
         )
-        robots.append(BackupRobot(f"ROB_{number}", product, found.robot, tuple(lacks)))
+        robots.append(BackupRobot(name or f"ROB_{number}", product, found.robot, tuple(lacks)))
     return tuple(robots)
+
+
+def _arms_of(product: str, count: int) -> list[tuple[str, str]]:
+    """The arms of a product, each with its name (``""`` for a number) and what to look for."""
+    if _TWO_ARMED not in product or count > 1:
+        return [("", product)]
+    return [(f"ROB_{key.upper()}", f"{product} {side}") for key, side in _SIDES.items()]
 
 
 def _own(
@@ -129,6 +142,9 @@ def _robot(
 ) -> BackupRobot:
     written = arm.text("use_robot_type") or ""
     found = find_arm(written, agreeing(written, products) or products, find_robot)
+    side = _SIDES.get(arm.name.rpartition("_")[2].casefold())
+    if found.robot is None and side is not None and _TWO_ARMED in written:
+        found = find_arm("", [f"IRB {_TWO_ARMED} {side}"], find_robot)
     if found.robot is None:
         return BackupRobot(arm.name, written, None, (found.lack,))
     robot, lacks = found.robot, list(_assumed(found.robot))
@@ -138,6 +154,8 @@ def _robot(
     lacks += said
     robot = _placed(robot, arm, units, notes)
     lacks += _arm_loads(moc, arm)
+    if robot.arm_angle_reference is not None:
+        lacks += _reference(arm)
     return BackupRobot(arm.name, written, _calibrated(robot, arm), tuple(lacks))
 
 
@@ -269,8 +287,9 @@ def _with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
     lacks = [lack for unit in units for lack in unit.lacks]
     made = sorted((unit for unit in units if unit.axis is not None), key=lambda unit: unit.number)
     axes: list[ExternalAxis] = []
+    first = robot.arm_size == AXES  # whose eax_a is the arm's own
     for unit in made:
-        if unit.number != len(axes):
+        if unit.number != first + len(axes):
             lacks.append(
                 f"unit {unit.name} is eax_{'abcdef'[unit.number]} of robtargets, and it is not "
                 "known what stands before it: it is left out"
@@ -345,12 +364,16 @@ def _gravity(
     """
     try:
         alpha, beta = (arm.number(f"gravity_{turn}") or 0.0 for turn in ("alpha", "beta"))
+        gamma = arm.number("gamma_rotation") or 0.0
     except InputError as error:
         notes.add(f"gravity is taken as on a level floor: {error}")
         return robot.gravity
-    turned = _about(0, alpha) @ _about(1, beta)
+    turned, stands = _about(0, alpha) @ _about(1, beta), np.eye(3)
+    if robot.arm_size == AXES:  # two arms stand on one body, and count from its frame
+        turned = turned @ _about(2, gamma)
+        stands = robot.joints[0].placement.matrix()[:3, :3]
     in_base = turned.T @ np.array(STANDARD_GRAVITY)
-    world = matrix_from_quaternion(np.array(frame.quaternion)) @ in_base
+    world = matrix_from_quaternion(np.array(frame.quaternion)) @ stands @ in_base
     if float(np.abs(world - np.array(STANDARD_GRAVITY)).max()) < 10 * _SAME:
         return STANDARD_GRAVITY
     tilt = math.degrees(math.acos(float(np.clip(turned[2, 2], -1.0, 1.0))))
@@ -387,6 +410,17 @@ def _arm_loads(moc: Parameters, arm: Record) -> list[str]:
     return [
         f"the arm carries {', '.join(said)} (MOC.cfg ARM_LOAD), of which its accelerations do "
         "not know"
+    ]
+
+
+def _reference(arm: Record) -> list[str]:
+    """What the file says of the direction that arm angles count from, in words nobody knows."""
+    said = [f"{key} {value}" for key, value in arm.values.items() if "arm_angle" in key]
+    if not said:
+        return []
+    return [
+        f"{arm.name} states {listed(said)}, which is not understood: arm angles are taken to count "
+        "from the usual direction of its type"
     ]
 
 

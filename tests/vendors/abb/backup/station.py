@@ -184,6 +184,58 @@ def on_track(base: str = "", single: str = "") -> dict[str, Sequence[str]]:
     }
 
 
+RIGHT = """MODULE MainModule
+  PERS tasks both{2}:=[["T_ROB_R"],["T_ROB_L"]];
+  VAR syncident met;
+  TASK PERS tooldata grip:=[TRUE,[[0,0,136],[1,0,0,0]],[0.26,[8,12,50],[1,0,0,0],0,0,0]];
+  PROC main()
+    MoveAbsJ [[0,-130,30,0,40,0],[-135,9E9,9E9,9E9,9E9,9E9]],v1000,fine,grip;
+    WaitSyncTask met,both;
+    MoveAbsJ [[35,-95,40,80,50,20],[-70,9E9,9E9,9E9,9E9,9E9]],v1000,fine,grip;
+    MoveL Offs(CRobT(\\Tool:=grip),0,0,30),v100,fine,grip;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def yumi(kinds: tuple[str, str] = ("ROB_R_14000_05_05", "ROB_L_14000_05_05")) -> Station:
+    """Two arms on one body, each with a task, that wait for each other."""
+    bent, mirrored = "[35,-95,40,80,50,20],[-70", "[-35,-95,40,-80,50,-20],[70"
+    left = RIGHT.replace("-135", "135").replace(bent, mirrored)
+    bounds = (168.5, -168.5), (43.5, -143.5), (80, -123.5), (290, -290), (138, -88), (229, -229)
+    turns = "-gravity_alpha {}0.629233 -gravity_beta 0.950657 -gamma_rotation {}0.184266"
+    arms, singles, groups = [], [], []
+    for side in "RL":
+        singles.append(
+            f'-name "ROB_{side}_7" -use_single_type "ROB_{side}_7" -use_joint "rob_{side}_7"'
+        )
+        group = f'-Name "rob_{side.lower()}" -Robot "ROB_{side}" -MechanicalUnit_1 "ROB_{side}_7"'
+        groups.append(group)
+        for axis, (upper, lower) in enumerate((*bounds, (150, -150)), 1):
+            ends = f"-upper_joint_bound {math.radians(upper)!r}"
+            ends += f" -lower_joint_bound {math.radians(lower)!r}"
+            arms.append(f'-name "rob_{side}_{axis}" {ends}')
+    robots = [
+        f'-name "ROB_{side}" -use_robot_type "{kind}" '
+        + " ".join(f'-use_joint_{k} "rob_{side}_{k + 1}"' for k in range(6))
+        + f" {turns.format(sign, sign)}"
+        for side, kind, sign in zip("RL", kinds, ("", "-"), strict=True)
+    ]
+    return Station(
+        products=("English", "IRB 14000-0.5/0.5"),
+        tasks={
+            "TASK1": ("T_ROB_R", {"PROGMOD/MainModule.mod": RIGHT}),
+            "TASK2": ("T_ROB_L", {"PROGMOD/MainModule.mod": left}),
+        },
+        cab_tasks=tuple(
+            f'-Name "T_ROB_{side}" -Type "NORMAL" -UseMechanicalUnitGroup "rob_{side}" -MotionTask'
+            for side in "RL"
+        ),
+        sys={"MECHANICAL_UNIT_GROUP": groups},
+        moc={"ROBOT": robots, "SINGLE": singles, "ARM": arms},
+    )
+
+
 def renamed(module: str, name: str, entry: str = "Main") -> str:
     """The main module of another task."""
     return module.replace("MainModule", name).replace("PROC Main", f"PROC {entry}")
