@@ -17,7 +17,7 @@ from .joint import CoupledRange, Joint, JointKind, beyond_coupled
 from .kinematics.arm_geometry import EXACT, Family, Recognised
 from .kinematics.chain import Chain
 from .kinematics.closed_form import SLACK
-from .kinematics.numerical import solve_numerically
+from .kinematics.numerical import STARTS, solve_numerically
 from .kinematics.scara import solve_scara
 from .kinematics.spherical_wrist import solve_spherical_wrist
 from .kinematics.tracking import track
@@ -35,6 +35,8 @@ SINGULAR = 1e-6
 """m (shoulder) or sine (elbow, wrist) below which a solution counts as singular."""
 SAME = 1e-6
 """rad or m within which two solutions are one."""
+_SEEDS = 2 * STARTS
+"""Starts from which a curve of configurations at a pose is looked for: some are short."""
 _APART = 6
 """° between arm angles of samples on a curve, above which there is a gap."""
 SOLVERS = {
@@ -183,7 +185,7 @@ def _with_arm_angle(
     p: FloatArray,
 ) -> tuple[InverseSolution, ...]:
     """All solutions with an arm angle; arguments and errors as of `solve`."""
-    seeds, least = solve_numerically(chain, ranges.lower, ranges.upper, R, p)
+    seeds, least = solve_numerically(chain, ranges.lower, ranges.upper, R, p, _SEEDS)
     if not seeds:
         raise UnreachableError(_out_of_reach(None, least), least)
     curves = self_motions(chain, angle.measured, seeds, R, p)

@@ -63,8 +63,8 @@ def approach(
     return float(left)
 
 
-def starts(lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Starts (S, n) spread evenly over the joints' ranges, the first in their middle.
+def starts(lower: FloatArray, upper: FloatArray, count: int = STARTS) -> FloatArray:
+    """Starts (count, n) spread evenly over the joints' ranges, the first in their middle.
 
     The additive recurrence of M. Roberts, "The unreasonable effectiveness of quasirandom
     sequences", 2018: the generalised golden ratio in n dimensions.
@@ -73,23 +73,31 @@ def starts(lower: FloatArray, upper: FloatArray) -> FloatArray:
     ratio = 2.0
     for _ in range(60):
         ratio = (1.0 + ratio) ** (1.0 / (size + 1))
-    fractions = (0.5 + np.outer(np.arange(STARTS), ratio ** -np.arange(1.0, size + 1))) % 1.0
+    fractions = (0.5 + np.outer(np.arange(count), ratio ** -np.arange(1.0, size + 1))) % 1.0
     spread: FloatArray = lower + fractions * (upper - lower)
     return spread
 
 
 def solve_numerically(
-    chain: Chain, lower: FloatArray, upper: FloatArray, R: FloatArray, p: FloatArray
+    chain: Chain,
+    lower: FloatArray,
+    upper: FloatArray,
+    R: FloatArray,
+    p: FloatArray,
+    count: int = STARTS,
 ) -> tuple[list[FloatArray], float]:
     """Configurations (n,) found for a flange pose, and the smallest pose error left.
 
     Not every solution need be among them, and equal ones may come several times. Angles are not
     brought into the limits.
+
+    Args:
+        count: how many starts are tried.
     """
     found: list[FloatArray] = []
     least = np.inf
     joints = np.arange(lower.size)
-    for start in starts(lower, upper):
+    for start in starts(lower, upper, count):
         left = approach(chain, start, R, p, COARSE, CLOSE)
         least = min(least, left)
         if left < 10 * CLOSE:

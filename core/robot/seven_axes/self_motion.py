@@ -23,6 +23,8 @@ from .arm_angle import AXES, ArmAngle, measure, settle, wrapped
 
 STEP = 0.06
 """rad along a curve, the length over all joints."""
+MOST_TURNED = 0.4
+"""rad by which the arm angle changes in one step: near the reference direction it changes fast."""
 SHORTEST = 1e-4
 """The same, below which a curve is given up: it ends at a singularity that no step crosses."""
 MOST = 4000
@@ -94,15 +96,16 @@ def with_arm_angle(
 
 
 def _starts(left: FloatArray) -> list[int]:
-    """Where on a curve the missing angle (M,) passes zero, or comes near to it and turns back."""
+    """Where on a curve to begin: beside each place at which the missing angle (M,) passes zero, or
+    comes near to it and turns back, as two configurations may lie there, one on each side."""
     size = np.abs(left)
-    passing = (left[:-1] * left[1:] <= 0.0) & (size[:-1] + size[1:] < math.pi)
-    nearer = np.where(size[:-1] <= size[1:], np.arange(len(left) - 1), np.arange(1, len(left)))
-    starts = set(nearer[passing].tolist())
+    passing = np.flatnonzero((left[:-1] * left[1:] <= 0.0) & (size[:-1] + size[1:] < math.pi))
+    starts = {*passing.tolist(), *(passing + 1).tolist()}
     if len(left) > 2:
         turning = (size[1:-1] <= size[:-2]) & (size[1:-1] <= size[2:])
         change = np.maximum(np.abs(np.diff(left))[:-1], np.abs(np.diff(left))[1:])
-        starts |= set((1 + np.flatnonzero(turning & (size[1:-1] < 4.0 * change))).tolist())
+        near = 1 + np.flatnonzero(turning & (size[1:-1] < 4.0 * change))
+        starts |= {*(near - 1).tolist(), *near.tolist(), *(near + 1).tolist()}
     return sorted(starts)
 
 
@@ -162,14 +165,17 @@ def _walk(
     row, step = MOST, STEP
     while abs(row - MOST) < MOST:
         trial[:] = q[row] + step * tangent
-        if not _correct(chain, R, p, tangent, trial, here_R, here_p, J):
+        reached = _correct(chain, R, p, tangent, trial, here_R, here_p, J)
+        turned = measure(angle, here_R, here_p, J, tangent[:0]) if reached else 0.0
+        far = abs(wrapped(turned - angles[row])) > MOST_TURNED
+        if not reached or (far and step > 2.0 * SHORTEST):
             step *= 0.5
             if step < SHORTEST:
                 return row, False
             continue
         row += way
         q[row] = trial
-        angles[row] = measure(angle, here_R, here_p, J, tangent[:0])
+        angles[row] = turned
         _tangent(J, tangent)
         step = min(STEP, 2.0 * step)
         if abs(row - MOST) > 3 and _returned(q, row, way, tangent, first):
