@@ -21,8 +21,9 @@ def step_of(states: States, s: int, j: int, length: float) -> float:
     q0, q1 = states.q[s, j], states.q[s + 1, j]
     rates = 0.5 * (states.dq[s, j] + states.dq[s + 1, j])
     bend = (states.ddq[s + 1, j] - states.ddq[s, j]) / 12.0
-    step = length * (rates - length * bend)
-    return step if abs(q1 - q0 - step) <= _ROUNDED * (1.0 + abs(q0)) else q1 - q0
+    step: float = length * (rates - length * bend)
+    way: float = q1 - q0
+    return step if abs(way - step) <= _ROUNDED * (1.0 + abs(q0)) else way
 
 
 @inner
