@@ -30,6 +30,8 @@ from .arm_angles import followed
 
 Label = Callable[[Robot, FloatArray], Configuration | None]
 
+_NAMED = 8
+"""Labels in a message: the nearest, as a posture has several where joints turn more than once."""
 _MATCH = 1e-9
 _SAME = 1e-9
 _TURNED = 2.4
@@ -276,7 +278,10 @@ class ConfigurationFinder:
             best = int(np.argmin(distance))
             self.departures[index] = f"contradicts the pose: driven to with {labels[best]}"
         elif not any(admitted):
-            known = ", ".join(sorted({str(name) for name in labels}))
+            near = dict.fromkeys(str(labels[k]) for k in np.argsort(distance))
+            known = ", ".join(list(near)[:_NAMED])
+            if len(near) > _NAMED:
+                known += f" and {len(near) - _NAMED} more"
             raise located(
                 move,
                 index,
