@@ -99,6 +99,7 @@ def identified_page(made: IdentifiedModel) -> Page:
         [table for table in tables if table.rows],
         CHARTS_OF_LOGS,
         notes=notes,
+        chosen=tracks.get(worst[0].run.name, -1),
         made_by=made_by(),
     )
 

@@ -1,4 +1,4 @@
-/*! flyby viewer, built from viewer/ sha256:ebba33ed5bf8a192306092c251742cae9e236835bf02ad4964d2ada19f360578
+/*! flyby viewer, built from viewer/ sha256:8c76c2da6e5ecc74230203a5a1643db7cf531da9794df37e42280f5a8fc08c50
 
 three 0.187.0
 
@@ -111,7 +111,7 @@ small { font-size: 11px; color: var(--quiet); font-weight: 400; }
 .names { display: flex; flex-wrap: wrap; gap: 0 12px; font-size: 11px; color: var(--quiet); margin-top: 2px; white-space: nowrap; line-height: 1.15; overflow: hidden; }
 .names i, .key i { display: inline-block; width: 9px; height: 9px; border-radius: 2px; margin-right: 4px; }
 .names b, .key b { color: var(--ink); font-weight: 600; font-variant-numeric: tabular-nums; }
-.choice { display: flex; gap: 6px; }
+.choice { display: flex; gap: 6px; flex: 0 1 auto; min-width: 0; }
 .segments { display: inline-flex; }
 .segments button { border-radius: 0; margin-left: -1px; }
 .segments button:first-child { border-radius: 4px 0 0 4px; margin-left: 0; }
@@ -134,7 +134,7 @@ label.row { display: inline-flex; gap: 4px; align-items: center; }
 .menu summary { list-style: none; cursor: pointer; border: 1px solid var(--rule); border-radius: 4px; padding: 2px 8px; }
 .menu > div { position: absolute; z-index: 5; top: 28px; left: 0; display: grid; gap: 4px; padding: 8px 10px; background: var(--paper); border: 1px solid var(--rule); border-radius: 6px; white-space: nowrap; }
 .menu label { display: flex; gap: 6px; align-items: center; }
-.choice select { max-width: 150px; }
+.choice select { max-width: 200px; min-width: 60px; flex: 0 1 auto; text-overflow: ellipsis; }
 .choice .segments button { white-space: nowrap; }
 .drawing { padding: 6px 10px; }
 .drawing svg { width: 100%; max-width: 560px; height: auto; display: block; font: 11px system-ui, sans-serif; fill: var(--quiet); }
