@@ -78,8 +78,11 @@ class _Side:
         step = np.linalg.norm(np.diff(self.path, axis=0), axis=1)
         time = np.diff(self.seen.t)
         found = np.zeros(len(self.seen.moves))
-        speed = np.where(time > _SHORT, step / np.maximum(time, _SHORT), 0.0)
-        np.maximum.at(found, self.seen.segment[:-1], speed)
+        leg = self.seen.segment
+        # From one leg to the next the tool may be another, and its TCP elsewhere without a way.
+        counts = (time > _SHORT) & (leg[:-1] == leg[1:])
+        speed = np.where(counts, step / np.maximum(time, _SHORT), 0.0)
+        np.maximum.at(found, leg[:-1], speed)
         return found
 
 
