@@ -80,7 +80,11 @@ def target_difference(
 
 
 def _alike(old: PoseTarget, new: PoseTarget) -> bool:
-    return old.configuration == new.configuration and old.external == new.external
+    return (
+        old.configuration == new.configuration
+        and old.external == new.external
+        and old.arm_angle == new.arm_angle
+    )
 
 
 def _joints_apart(old: JointTarget, new: JointTarget) -> float | None:
@@ -177,7 +181,9 @@ def target_text(target: Target) -> str:
     turned = ", ".join(f"{part:.4f}" for part in _upright(target.pose))
     which = "" if target.configuration is None else f" {target.configuration}"
     more = f" + {', '.join(f'{value:.4f}' for value in target.external)}" if target.external else ""
-    return f"{where} [{turned}]{which}{more}"
+    angle = target.arm_angle
+    arm = "" if angle is None else f" arm angle {math.degrees(angle):.2f}°"
+    return f"{where} [{turned}]{which}{arm}{more}"
 
 
 def _place(pose: Pose) -> str:

@@ -160,6 +160,7 @@ def turned_alike(one: Target, other: Target, unstated: bool = False) -> bool:
         one.pose.quaternion == other.pose.quaternion
         and (mine == yours or (unstated and yours is None))
         and one.external == other.external
+        and one.arm_angle == other.arm_angle
     )
 
 

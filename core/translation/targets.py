@@ -128,7 +128,9 @@ class Placer:
         carried = replace(move, target=target, tool=tool, work_object=work_object)
         if isinstance(carried, MoveC):
             at = self._frames.pose(move, carried.via.pose)
-            via = replace(carried.via, pose=at, configuration=None, external=external)
+            via = replace(
+                carried.via, pose=at, configuration=None, external=external, arm_angle=None
+            )
             carried = replace(carried, via=via)
         return carried
 
@@ -310,8 +312,9 @@ class Placer:
             return replace(new, target=JointTarget(joints.joints, external, old.target.name))
         if self._dialect is not None and not self._dialect.words(new).configurations:
             return new
-        label = self._target.vendor.label(self._target.robot, q)
-        named = replace(new, target=replace(new.target, configuration=label))
+        robot = self._target.robot
+        label, angle = self._target.vendor.label(robot, q), robot.arm_angle(q)
+        named = replace(new, target=replace(new.target, configuration=label, arm_angle=angle))
         if isinstance(named, MoveC):
             via = replace(named.via, configuration=self._label_near(named, q))
             named = replace(named, via=via)

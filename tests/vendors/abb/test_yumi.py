@@ -202,3 +202,23 @@ def test_without_an_arm_angle_the_third_axis_stays(read) -> None:
     run = flyby.emulate(program)
     third = find_robot(RIGHT).along[2]
     assert end(run, 1)[third] == end(run, 2)[third] == pytest.approx(math.radians(-70))
+
+
+def test_translated_to_it_targets_state_an_arm_angle(tmp_path) -> None:
+    free = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+    path = tmp_path / "six.mod"
+    path.write_text(
+        module(
+            f"MoveAbsJ [[0,0,0,0,30,0],{free}],v500,fine,tool0;",
+            f"MoveJ [[350,0,400],[0,0,1,0],[0,0,0,0],{free}],v500,z10,tool0;",
+            f"MoveL [[350,60,400],[0,0,1,0],[0,0,0,0],{free}],v200,fine,tool0;",
+        ),
+        "utf-8",
+    )
+    made = flyby.translate(flyby.read(path, robot="IRB 1100-4/0.58"), robot=RIGHT)
+    _, joint, line = made.program.moves
+    assert joint.target.arm_angle is not None and line.target.arm_angle is not None
+    run = flyby.emulate(made.program, robot=RIGHT)
+    for k, move in enumerate((joint, line), 1):
+        at = run.robot.flange_pose(end(run, k)).matrix()
+        np.testing.assert_allclose(at, move.target.pose.matrix(), atol=1e-9)
