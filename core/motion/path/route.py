@@ -42,7 +42,7 @@ from .configurations import ConfigurationFinder, Label, located
 from .no_move import no_move
 from .path import Route
 from .programmed_speeds import programmed
-from .route_checks import check_near, half_turns, is_arc
+from .route_checks import arm_angle_notes, check_near, half_turns, is_arc
 from .tcp_samples import CONVERGED, States
 from .tcp_walk import sample_tcp
 from .unreachable import why_stranded
@@ -54,10 +54,6 @@ _START = -1
 _STRAIGHT = (
     "the three points of the arc lie on a line: it is driven as the line. Some controllers stop "
     "there: use a linear move"
-)
-_THIRD_EVENLY = (
-    "assumed: the arm's third axis turns evenly along moves of the TCP, from where it stands to "
-    "where the target's arm angle has it; how the controller leads it there is not published"
 )
 _NOWHERE = 1e-6
 """Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
@@ -422,7 +418,7 @@ class RouteFinder:
                 notes.append(Note("goes nowhere: it is at its target already", move))
         notes += half_turns(segments, keep, legs.moves)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
-        notes += [Note(_THIRD_EVENLY, move) for move in legs.led[:1]]
+        notes += arm_angle_notes(self._robot, program, legs.led)
         for move, said in self._targets.departures.items():
             target = program.moves[move].target
             assert isinstance(target, PoseTarget)

@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray
 from ...errors import Note
 from ...program.move import Move, MoveC
-from ...program.target import JointTarget
+from ...program.target import JointTarget, PoseTarget
 from ...spatial.rotation import arc_angle, cross_length
 from ..geometry.segments import LINE_SEGMENT, Segments
 from .configurations import located
 
 if TYPE_CHECKING:
     from ...dialect import ArcRules
+    from ...program.program import Program
+    from ...robot.model import Robot
 
 _FURTHEST = 1e3
 """m from the frame that it is given in beyond which a target, tool or work object is a mistake."""
@@ -27,6 +29,11 @@ _HALF_TURN = np.radians(179.9)
 _COLLINEAR = 1e-4
 _ROUNDING = 1e-6
 """rad by which an arc may be longer than controllers drive it: programs round their points."""
+
+_THIRD_EVENLY = (
+    "assumed: the arm's third axis turns evenly along moves of the TCP, from where it stands to "
+    "where the target's arm angle has it; how the controller leads it there is not published"
+)
 
 
 def check_near(move: Move, i: int, before: Move | None) -> None:
@@ -113,3 +120,21 @@ def half_turns(segments: Segments, keep: NDArray[np.bool_], moves: Sequence[int]
         )
         for k in map(int, np.flatnonzero(half))
     ]
+
+
+def arm_angle_notes(robot: Robot, program: Program, led: Sequence[int]) -> list[Note]:
+    """What is assumed where targets state arm angles.
+
+    Args:
+        led: indices of the moves of the TCP to one.
+    """
+    notes = [Note(_THIRD_EVENLY, move) for move in led[:1]]
+    origin = robot.origins.get("arm_angle", "")
+    first = next((i for i, move in enumerate(program.moves) if _states_one(move)), None)
+    if first is not None and origin.startswith("assumed"):
+        notes.append(Note(f"what arm angles of {robot.name} count from is {origin}", first))
+    return notes
+
+
+def _states_one(move: Move) -> bool:
+    return isinstance(move.target, PoseTarget) and move.target.arm_angle is not None

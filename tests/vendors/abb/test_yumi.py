@@ -115,6 +115,13 @@ def test_lines_end_with_the_arm_angle_of_their_target(read) -> None:
         np.testing.assert_allclose(at, target.pose.matrix(), atol=1e-9)
     said = [note for note in run.notes if "third axis turns evenly" in note.message]
     assert len(said) == 1 and said[0].move == 1
+    assert not [note for note in run.notes if "count from" in note.message]
+
+
+def test_what_arm_angles_count_from_is_told_where_it_is_assumed(read) -> None:
+    run = flyby.emulate(read(module(*LINES), "IRB 14050"))
+    (said,) = [note for note in run.notes if "count from is assumed: z of the base" in note.message]
+    assert said.move == 1
 
 
 def test_crobt_tells_the_arm_angle_and_calcjointt_comes_back(read) -> None:
