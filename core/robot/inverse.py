@@ -28,7 +28,6 @@ from .seven_axes.self_motion import self_motions, with_arm_angle
 FULL_TURN = 2 * math.pi
 LIMIT_SLACK = 1e-9
 """rad or m by which a solution may miss a limit; it is set onto the limit."""
-_BRANCHES = tuple(product((False, True), repeat=3))
 UNSURE = 1e-6
 """m out of reach that rounding near two singularities may feign: Newton's method decides."""
 SINGULAR = 1e-6
@@ -77,6 +76,10 @@ class Branch:
     shoulder: bool
     elbow: bool
     wrist: bool
+
+
+_BRANCHES = tuple(Branch(*bits) for bits in product((False, True), repeat=3))
+_REGULAR: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -235,13 +238,14 @@ def _within_limits(
     solutions: list[InverseSolution] = []
     names = [joint.name for joint in joints]
     beyond = beyond_coupled(coupled, names, settled) > LIMIT_SLACK
-    for k in np.flatnonzero(beyond.any(axis=1) & inside):
+    for k in np.flatnonzero(beyond.any(axis=1) & inside) if coupled else ():
         others = equivalent_turns(joints, settled[k])
         fitting = others[(beyond_coupled(coupled, names, others) <= LIMIT_SLACK).all(axis=1)]
         if len(fitting):  # a joint that is counted with another one may turn by more than once
             settled[k], beyond[k] = fitting[np.abs(fitting).sum(axis=1).argmin()], False
     broken = beyond & inside[:, None]
-    inside &= ~beyond.any(axis=1)
+    if coupled:
+        inside &= ~beyond.any(axis=1)
     for candidate, q, fits in zip(candidates, settled, inside, strict=True):
         if not fits or (candidate.doubtful and any(_same(candidate, q, s) for s in solutions)):
             continue
@@ -262,18 +266,18 @@ def _closed_form(
     least = float(SOLVERS[known.family](known.geometry, R, p, q, measures))
     q = np.ascontiguousarray(known.values(q))
     candidates = []
-    for number, (bits, (*sizes, missing)) in enumerate(
-        zip(_BRANCHES, measures.tolist(), strict=True)
-    ):
+    for branch, at, (*sizes, missing) in zip(_BRANCHES, q, measures.tolist(), strict=True):
         if missing > max(UNSURE, known.error):
             continue
         ideal = known.error <= EXACT and missing <= SLACK
-        if not ideal and not track(chain, q[number], R, p, np.arange(6), q[number])[0]:
+        if not ideal and not track(chain, at, R, p, np.arange(6), at)[0]:
             continue
-        names = zip(("shoulder", "elbow", "wrist"), sizes, strict=True)
-        singular = frozenset([name for name, size in names if abs(size) < SINGULAR])
+        singular = _REGULAR
+        if min(map(abs, sizes)) < SINGULAR:
+            names = zip(("shoulder", "elbow", "wrist"), sizes, strict=True)
+            singular = frozenset([name for name, size in names if abs(size) < SINGULAR])
         doubtful = bool(singular) or not ideal
-        candidates.append(UnboundedSolution(q[number], Branch(*bits), singular, doubtful))
+        candidates.append(UnboundedSolution(at, branch, singular, doubtful))
     return candidates, least
 
 

@@ -33,6 +33,7 @@ from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
 from .kinematics.chain_kernels import jacobian, jacobians, poses
+from .kinematics.chain_kernels import pose as write_pose
 from .seven_axes.arm_angle import AXES, ArmAngle, arm_angle_of, measure
 from .shape import LinkShape, TouchingLinks
 
@@ -391,9 +392,11 @@ class Robot:
                 f"{len(external)} values were given"
             )
         matrix = pose.matrix() if isinstance(pose, Pose) else np.asarray(pose, dtype=float)
-        base_R, base_p = poses(self.base_chain, np.array([[0.0] * self.arm_size + list(external)]))
-        R = base_R[0].T @ matrix[:3, :3]
-        p = base_R[0].T @ (matrix[:3, 3] - base_p[0])
+        base = np.empty((4, 3))
+        values = np.array([0.0] * self.arm_size + list(external))
+        write_pose(self.base_chain, values, base[:3], base[3])
+        R = base[:3].T @ matrix[:3, :3]
+        p = base[:3].T @ (matrix[:3, 3] - base[3])
         return solve(
             self.arm_chain,
             self.joints,

@@ -31,12 +31,14 @@ def quaternion_from_matrix(matrix: FloatArray) -> FloatArray:
     """
     m = np.ascontiguousarray(matrix, dtype=float)
     quaternion = np.empty((m.size // 9, 4))
-    _quaternions(m.reshape(-1, 3, 3), quaternion)
+    fill_quaternions(m.reshape(-1, 3, 3), quaternion)
     return quaternion.reshape(*m.shape[:-2], 4)
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
-def _quaternions(matrices: FloatArray, quaternions: FloatArray) -> None:
+def fill_quaternions(matrices: FloatArray, quaternions: FloatArray) -> None:
+    """Write the unit quaternions (M, 4) of rotation matrices (M, 3, 3); see
+    `quaternion_from_matrix`."""
     for k in range(len(matrices)):
         a, b, c = matrices[k, 0, 0], matrices[k, 1, 1], matrices[k, 2, 2]
         trace = a + b + c

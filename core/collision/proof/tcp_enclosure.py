@@ -38,6 +38,9 @@ from ...robot.kinematics.chain_bounds import bias
 from ...robot.kinematics.chain_kernels import jacobians
 from .boxes import Boxes
 
+_AT_FIRST = 0.03
+"""Share of the fastest joint's way that tubes are tried to be as wide as; see `stays_in_tube`."""
+
 
 @njit(cache=True, error_model="numpy")
 def _bound_higher(
@@ -103,8 +106,9 @@ def _verify(
         if not (
             invert(chain, place, columns[m], work) != 0
             and stays_in_tube(
-                chain, solved, prescribed, place, columns[m], rate, bend, jerk[m], work
+                chain, solved, prescribed, place, columns[m], rate, bend, jerk[m], _AT_FIRST, work
             )
+            < np.inf
             and _bound_higher(chain, solved, place, 0, acceleration, work)
             and _bound_higher(chain, solved, place, 1, jerk[m], work)
         ):

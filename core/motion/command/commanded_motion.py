@@ -69,7 +69,7 @@ def commanded_motion(
     for part in stretches(t):
         sigma[part] = timing.place_at(np.clip(t[part] - timing.lag, 0.0, timing.duration))
         if smoothing.window == 0.0 and timing.ramp == 0.0 and lead is None and servo.still:
-            q[part], dq[part], ddq[part] = timing.driven_at(t[part])
+            timing.driven_at(t[part], (q[part], dq[part], ddq[part]))
             continue
         begin, end = t[part][0] - _ASIDE * step, t[part][-1] + _ASIDE * step
         first = min(begin, t[part][0] - back)
@@ -77,12 +77,18 @@ def commanded_motion(
             first = min(first, friction.known_to)
         # What `lead_states_at` averages may begin two steps before.
         stamped = stamped_motion(timing, first - smoothing.window - 2 * step, end)
-        own = None if needs_jerk else (q[part], dq[part], ddq[part])
-        smooth = smoothing.command(stamped, t[part], own)
-        offs = [] if friction is None else [friction.over(stamped, t[part], smooth)]
+        smooth = (q[part], dq[part], ddq[part])
+        if needs_jerk:
+            smooth = np.empty_like(q[part]), np.empty_like(q[part]), np.empty_like(q[part])
+        left = 0
         if lead is not None or needs_jerk:
             even = even_times(max(begin, 0.0), min(end, timing.duration), step)
             known = smoothing.command(stamped, even)
+            left = _taken_over(even, known, t[part], smooth)
+        if left < len(smooth[0]):
+            rest = (smooth[0][left:], smooth[1][left:], smooth[2][left:])
+            smoothing.command(stamped, t[part][left:], rest)
+        offs = [] if friction is None else [friction.over(stamped, t[part], smooth)]
         if needs_jerk:
             jerk = derivatives_of(even, known[2], t[part])[1]
             q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
@@ -96,6 +102,17 @@ def commanded_motion(
             for links, by in zip((q, dq, ddq), off, strict=True):
                 links[part] += by
     return CommandedMotion((q, dq, ddq), lead, sigma)
+
+
+def _taken_over(even: FloatArray, known: States, t: FloatArray, out: States) -> int:
+    """Take what is known at even times for the first of the times t that are the same: how many."""
+    first = int(np.searchsorted(even, t[0]))
+    beside = even[first : first + len(t)]
+    others = np.flatnonzero(beside != t[: len(beside)])
+    count = int(others[0]) if len(others) else len(beside)
+    for target, source in zip(out, known, strict=True):
+        target[:count] = source[first : first + count]
+    return count
 
 
 def stamped_motion(timing: Timing, begin: float = -np.inf, end: float = np.inf) -> JointMotion:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,9 +15,9 @@ from ...program.move import Move
 from ...program.program import Program
 from ...program.target import JointTarget
 from ...robot.joint import JointKind
-from ...robot.kinematics.chain_kernels import poses
+from ...robot.kinematics.chain_kernels import fill_poses
 from ...robot.model import Robot
-from ...spatial.rotation import quaternion_from_matrix
+from ...spatial.rotation import fill_quaternions
 from ...vendor import Vendor
 from ..command.commanded_motion import commanded_motion, stretches
 from ..command.smoothing import Smoothing, smoothing_at
@@ -331,15 +332,14 @@ class Controller:
         """TCP in the world; of a stationary tool, in the work object."""
         position, quaternion = np.empty((len(q), 3)), np.empty((len(q), 4))
         chains = [self._routes.world_chain(move.tool, move.work_object) for move in moves]
-        index = {id(chain): chain for chain in chains}
-        order = {key: n for n, key in enumerate(index)}
-        owner = np.array([order[id(chain)] for chain in chains])[segment]
+        owner = np.array([id(chain) for chain in chains])[segment]
         for part in stretches(t):
-            for n, chain in enumerate(index.values()):
-                rows = part.start + np.flatnonzero(owner[part] == n)
-                if len(rows):
-                    rotation, position[rows] = poses(chain, np.ascontiguousarray(q[rows]))
-                    quaternion[rows] = quaternion_from_matrix(rotation)
+            changes = part.start + 1 + np.flatnonzero(np.diff(owner[part]))
+            for first, last in pairwise([part.start, *map(int, changes), part.stop]):
+                rotation = np.empty((last - first, 3, 3))
+                chain = chains[segment[first]]
+                fill_poses(chain, q[first:last], rotation, position[first:last])
+                fill_quaternions(rotation, quaternion[first:last])
         return position, quaternion
 
     def _excess_notes(self, program: Program, timing: Timing, trajectory: Trajectory) -> list[Note]:

@@ -47,7 +47,7 @@ class Reach:
 
     def mapped(self, value: float, slope: float) -> Reach:
         """A function of it, with that value and that derivative."""
-        return Reach(value, tuple((n, i, p * slope) for n, i, p in self.parts))
+        return Reach(value, tuple([(n, i, p * slope) for n, i, p in self.parts]))
 
     def scaled(self, factor: float) -> Reach:
         """A multiple of it."""
@@ -65,4 +65,8 @@ class Reach:
 
 def least(*reaches: Reach) -> Reach:
     """The smallest of some."""
-    return min(reaches, key=lambda reach: reach.value)
+    smallest = reaches[0]
+    for reach in reaches:
+        if reach.value < smallest.value:
+            smallest = reach
+    return smallest

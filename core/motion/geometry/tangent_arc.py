@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray
+from ...spatial.rotation import angle_between
 from .corners import POSITION, TCP_CORNER, Corners
 from .curves import ARC, Curves
 from .segments import LINE_SEGMENT, Segments, SegmentsGradient
@@ -72,7 +73,7 @@ class _Arc:
         first, second = step[0] / lengths[0], step[1] / lengths[1]
         cosine = float(first @ second)
         zone = float(reach[0] * lengths[0])
-        deflection = float(np.arctan2(np.linalg.norm(np.cross(first, second)), cosine))
+        deflection = angle_between(first, second)
         inward = (second - cosine * first) / np.sin(deflection)
         radius = zone / np.tan(0.5 * deflection)
         return cls(lengths, first, second, zone, cosine, deflection, float(radius), inward)

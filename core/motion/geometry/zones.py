@@ -59,6 +59,9 @@ class ZonePlanner:
         limits: JointLimits,
     ) -> None:
         self._segments = in_time(segments, model.duration.ramp)
+        # Plain numbers: corners are looked at one by one, where an array costs more than they do.
+        self._kinds: list[int] = segments.ends.kind.tolist()
+        self._lengths: list[float] = segments.length.tolist()
         self._chains = chains
         self._model = model
         self._moves = moves
@@ -83,13 +86,13 @@ class ZonePlanner:
             wanted = self._shrunk(wanted)
         elif self._model.overlap is Overlap.SKIP:
             overlapping = self._overlapping(wanted)
-        wanted = [self._lessened(i, pairs) for i, pairs in enumerate(wanted)]
+        if self._model.tcp.kind == "arc" and self._model.pace is Pace.SUPERPOSED:
+            wanted = [self._lessened(i, pairs) for i, pairs in enumerate(wanted)]
+        values = [[(before.value, after.value) for before, after in pairs] for pairs in wanted]
+        reach = np.array(values).reshape(-1, 3, 2)
         kind = np.zeros(len(zones), dtype=np.int64)
-        reach = np.zeros((len(zones), 3, 2))
-        for i, pairs in enumerate(wanted):
-            reach[i] = [[pair[0].value, pair[1].value] for pair in pairs]
-            if reach[i, POSITION].min() > _NOTHING:
-                kind[i] = self._kind(i)
+        for i in map(int, np.flatnonzero(reach[:, POSITION].min(axis=1) > _NOTHING)):
+            kind[i] = self._kind(i)
         timed = self._timed(kind, wanted)
         return Corners(kind, reach, wanted, self._kept, overlapping, self._notes, timed)
 
@@ -168,16 +171,15 @@ class ZonePlanner:
         return self._model.neighbour_fraction if self._model.overlap is Overlap.HALF else 1.0
 
     def _kind(self, i: int) -> int:
-        kinds = self._segments.ends.kind[i : i + 2]
+        joint = self._kinds[i : i + 2].count(JOINT_SEGMENT)
         same_chain = self._chains[i] is self._chains[i + 1]
-        mixed = same_chain and (kinds == JOINT_SEGMENT).sum() == 1
-        if mixed and self._model.mixed_space is Space.TCP:
+        if same_chain and joint == 1 and self._model.mixed_space is Space.TCP:
             raise MotionError(
                 "a corner between a joint move and a move of the TCP, blended in TCP space, is not "
                 'emulated; set zone.mixed_space = "joint" in the motion model',
                 self._moves[i],
             )
-        return TCP_CORNER if same_chain and (kinds != JOINT_SEGMENT).all() else JOINT_CORNER
+        return TCP_CORNER if same_chain and joint == 0 else JOINT_CORNER
 
     def _reaches(self, i: int, zone: Zone) -> _Reaches:
         """Reaches of position, turning and prescribed axes before the rules on overlap."""
@@ -204,9 +206,8 @@ class ZonePlanner:
         """Whether the vendor makes no zone between a TCP move and a pure reorientation."""
         if not self._model.stops_at_pure_reorientation:
             return False
-        kinds = self._segments.ends.kind[i : i + 2]
-        lengths = self._segments.length[i : i + 2]
-        if (kinds == JOINT_SEGMENT).any() or (lengths < STILL).sum() != 1:
+        still = [length < STILL for length in self._lengths[i : i + 2]]
+        if JOINT_SEGMENT in self._kinds[i : i + 2] or still.count(True) != 1:
             return False
         self._note(i, "no zone between a move of the TCP and a pure reorientation: it stops here")
         return True
@@ -364,17 +365,18 @@ class ZonePlanner:
 
     def _exit(self, segment: int, corner: int, size: Reach, angle: float) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
-        s = self._segments
-        limit = Reach(self._furthest)
-        if s.ends.kind[segment] == JOINT_SEGMENT:
+        kind, length, limit = self._kinds[segment], self._lengths[segment], Reach(self._furthest)
+        if kind == JOINT_SEGMENT:
             return self._joint_exit(segment, corner, size, limit)
-        length = float(s.length[segment])
         if length < STILL:
             return self._by_angle(segment, angle, corner)
-        if s.ends.kind[segment] != ARC_SEGMENT:
-            share = size * Reach(length, (("length", segment, 1.0),)).inverse()
-            return least(share, limit)
-        swept = float(s.angle[segment])
+        if kind != ARC_SEGMENT:
+            share = size.value / length
+            if share > limit.value:
+                return limit
+            along = [(n, k, p / length) for n, k, p in size.parts]
+            return Reach(share, (*along, ("length", segment, -share / length)))
+        swept = float(self._segments.angle[segment])
         r = length / swept
         if size.value >= 2 * r:
             return limit
@@ -421,8 +423,7 @@ class ZonePlanner:
         """A zone made smaller where legs arrive at another speed than its arc's; see
         `smaller_blends`."""
         model, s = self._model, self._segments
-        superposed = model.tcp.kind == "arc" and model.pace is Pace.SUPERPOSED
-        if not superposed or model.centripetal is None or pairs[POSITION][0].value <= _NOTHING:
+        if model.centripetal is None or pairs[POSITION][0].value <= _NOTHING:
             return pairs
         if self._kind(i) != TCP_CORNER:
             return pairs

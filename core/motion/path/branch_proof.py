@@ -39,8 +39,6 @@ LEAST = 1e-9
 """rad or m: rounding of configurations from Newton's method."""
 _ROUNDS = 6
 _WIDER = 1.3
-_AT_FIRST = 0.03
-"""Share of the fastest joint's way that is taken for the tube's radius to begin with."""
 
 
 class TubeWork(NamedTuple):
@@ -166,20 +164,30 @@ def bounded_solution(work: TubeWork, linear: float, angular: float) -> bool:
 
 
 @inner
-def _stays_inside(solved: IntArray, work: TubeWork, linear: float, angular: float) -> bool:
+def _stays_inside(
+    solved: IntArray, work: TubeWork, linear: float, angular: float
+) -> tuple[bool, float]:
     """Whether y + K r + |J_m⁻¹ w| ≤ r, w any twist of these lengths: r then bounds the solution.
 
     As y > 0 here, 1 − K is an M-matrix then; see `bounded_solution`. What is written to
     ``work.first`` but for |q_m'| is the left side.
+
+    Returns:
+        That, and the greatest share of r that is K r, times that of the left side up to one: it
+        grows with about the square of the tube's length.
     """
-    inside = True
+    inside, strain, tight = True, 0.0, 0.0
     for i in range(6):
         most = work.y[i] + work.rows[i, 0] * linear + work.rows[i, 1] * angular + 1e-15
+        own, radius = 0.0, work.radius[solved[i]]
         for j in range(6):
-            most += work.K[i, j] * work.radius[solved[j]]
+            own += work.K[i, j] * work.radius[solved[j]]
+        most += own
         work.first[solved[i]] = most
-        inside = inside and most < work.radius[solved[i]]
-    return inside
+        # A comparison that holds for what is not a number, too.
+        inside = inside and most < radius
+        strain, tight = max(strain, own / radius), max(tight, most / radius)
+    return inside, strain * min(tight, 1.0)
 
 
 @inner
@@ -262,8 +270,9 @@ def stays_in_tube(
     rate: FloatArray,
     bend: FloatArray,
     jerk: FloatArray,
+    at_first: float,
     work: TubeWork,
-) -> bool:
+) -> float:
     """Find a tube that q does not leave, ``work.radius``, and bounds of |q'| in ``work.first``.
 
     Args:
@@ -273,7 +282,12 @@ def stays_in_tube(
         columns: (6, K), one column per joint of the chain at q_m.
         rate, bend: (N,), derivatives of q at q_m.
         jerk: (2 + m,), bounds of the third derivatives of place, turn and prescribed axes.
+        at_first: share of the fastest joint's way that is taken for the tube's radius to begin
+            with. The narrower, the tighter the bounds; the wider, the sooner it is proven.
         work: with the inverse of the solved columns; see `invert`.
+
+    Returns:
+        How near the proof came to failing, below 1; inf if no tube was found.
     """
     _begin(prescribed, rate, bend, jerk, work)
     fastest = 0.0
@@ -288,19 +302,19 @@ def stays_in_tube(
         for k in range(chain.joint.size):
             work.swept[i, k] = abs(work.swept[i, k])
     for i in range(6):
-        work.radius[solved[i]] = _WIDER * abs(bend[solved[i]]) + _AT_FIRST * fastest + LEAST
+        work.radius[solved[i]] = _WIDER * abs(bend[solved[i]]) + at_first * fastest + LEAST
     for _ in range(_ROUNDS):
         for i in range(6):
             work.y[i] = abs(bend[solved[i]])
         twist, spin = _bound_changes(chain, place, columns, rate, bend, work)
         linear, angular = 0.5 * jerk[0] + twist, 0.5 * jerk[1] + spin
-        inside = _stays_inside(solved, work, linear, angular)
+        inside, strain = _stays_inside(solved, work, linear, angular)
         if inside:
             for i in range(6):
                 work.first[solved[i]] += abs(rate[solved[i]])
-            return True
+            return float(strain)
         if not bounded_solution(work, linear, angular):
-            return False
+            return np.inf
         inside = True
         for i in range(6):
             axis = solved[i]
@@ -309,5 +323,5 @@ def stays_in_tube(
                 inside = False
                 work.radius[axis] = _WIDER * work.y[i]
         if inside:
-            return True
-    return False
+            return float(strain)
+    return np.inf

@@ -197,8 +197,8 @@ class ConfigurationFinder:
             raise located(move, index, str(error)) from error
         third = self.redundant
         if third is not None and target.arm_angle is None:
-            turned = self._with_third_kept(found, flange, q, third)
-            if not turned:
+            turned = np.array(self._with_third_kept(found, flange, q, third))
+            if not len(turned):
                 name, value = self._robot.axis_names[third], np.degrees(q[third])
                 raise located(
                     move,
@@ -210,9 +210,9 @@ class ConfigurationFinder:
         elif target.configuration is None and not all_turns:
             turned = self._nearest_turns(np.array(found), before[:arm])
         else:
-            turned = [t for solution in found for t in self._robot.turns(solution)]
-        options = np.tile(q, (len(turned), 1))
-        options[:, :arm] = turned
+            turned = np.concatenate([self._robot.turns(solution) for solution in found])
+        options = np.empty((len(turned), len(q)))
+        options[:, :arm], options[:, arm:] = turned, q[arm:]
         return options
 
     def _with_third_kept(
@@ -240,18 +240,18 @@ class ConfigurationFinder:
                 kept += [t for t in turns if abs(t[third] - q[third]) < _SAME]
         return kept
 
-    def _nearest_turns(self, q: FloatArray, before: FloatArray) -> list[FloatArray]:
+    def _nearest_turns(self, q: FloatArray, before: FloatArray) -> FloatArray:
         """Of the arm's configurations whole turns away from each of q (K, n), the one nearest to
         ``before``."""
         limits = self._robot.limits
         size = q.shape[1]
         turned = q + self._full_turn * np.round((before - q) / (2 * np.pi))
         beyond = (turned < limits.lower[:size]) | (turned > limits.upper[:size])
-        found = list(turned)
-        for k in np.flatnonzero(beyond.any(axis=1)):
-            options = self._robot.turns(q[k])
-            found[k] = options[np.argmin(np.abs(options - before).sum(axis=1))]
-        return found
+        if beyond.any():
+            for k in np.flatnonzero(beyond.any(axis=1)):
+                options = self._robot.turns(q[k])
+                turned[k] = options[np.argmin(np.abs(options - before).sum(axis=1))]
+        return np.asarray(turned)
 
     def _pick(
         self,

@@ -1,16 +1,15 @@
 """Compiled walk along a path of the TCP, on one branch of inverse kinematics from end to end.
 
-As far as can be, `branch_proof` proves of a stretch of the path that the joints, followed from
-where the walk stands, cannot leave a tube; samples on that stretch count only if they are found in
-it. Stretches that cannot be proven are halved. So no other branch is taken for the same one, and
-where that cannot be decided, at a singular configuration or next to it, the walk ends.
+As far as can be, `branch_proof` proves of a stretch of the path that the joints, followed from its
+middle, cannot leave a tube (`walk_steps`); where the walk stands and samples on that stretch
+count only if they are found in it. Stretches that cannot be proven are shortened. So no other
+branch is taken for the same one, and where that cannot be decided, at a singular configuration or
+next to it, the walk ends.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
 from threading import get_ident
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -20,91 +19,49 @@ from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.kinematics.lean import inner, lean
 from ...robot.kinematics.tracking import pose_error, track
-from ..geometry.curve_bounds import bound_jerk
 from ..geometry.curves import Samples, TcpCurves
-from .between_states import joint_at
-from .branch_proof import LEAST, TubeWork, make_tube_work
+from .branch_proof import LEAST
 from .singular_samples import FIRST, settle
 from .tcp_samples import (
     CONVERGED,
     SINGULAR,
     Scratch,
     States,
-    make_scratch,
     set_places,
     state_at,
 )
-from .walk_steps import CAME, HERE, NEXT, copy_row, hop_over, keeps_branch, stand
+from .walk_steps import (
+    CAME,
+    HERE,
+    NEXT,
+    WalkWork,
+    copy_row,
+    expect,
+    first_reach,
+    hop_over,
+    prove,
+    stand,
+    walk_work,
+)
 
 JOINED = 1e-5
 """rad or m by which configurations of one place may differ: what Newton's method leaves of a pose
 given with rounding, near a singularity too."""
-_LONGER, _SHORTER = 1.5, 0.5
-"""Factors by which a stretch is tried longer than the last, and again where it is not proven."""
+_LONGER, _SHORTER = 2.0, 0.6
+"""Factors by which a stretch is at most longer than the last, and tried again if not proven."""
+_STRAIN = 0.3
+"""Of tubes, that stretches are made as long for; it grows with about the square of their length."""
 _HOP, _NEAR = 0.2, 0.05
 """Share of the way between two samples, and conditioning, below which a stretch to prove may lie
 next to a singular configuration."""
 _FINEST = 1e-7
-"""Share of the way between two samples below which steps are not halved any more."""
-
-
-_FORESIGHT = 2.0
-"""In multiples of the last step, how far both states at its ends tell best where joints will be."""
-
-
-class _Work(NamedTuple):
-    """Arrays that a walk reuses: for `state_at`, for the tube, and its own.
-
-    Rows of ``walk`` are where it stands, where it came from, and its next step.
-    """
-
-    pose: Scratch
-    tube: TubeWork
-    walk: States
-    jerk: FloatArray
-    by_t: FloatArray
-    taylor: FloatArray
-    centre: FloatArray
-    slope: FloatArray
-
-
-@lru_cache(maxsize=64)
-def _work(thread: int, size: int, prescribed: int, joints: int, width: int) -> _Work:
-    """For N = ``size`` axes, some of them prescribed, K = ``joints`` and curves of ``width``."""
-    return _Work(
-        make_scratch(size, prescribed, joints),
-        make_tube_work(size, joints),
-        States.zeros(3, size),
-        np.empty(2 + prescribed),
-        np.empty((3, max(size, 2 + prescribed))),
-        np.empty((width, 3)),
-        np.empty(size),
-        np.empty(size),
-    )
+"""Share of the way between two samples below which steps are not shortened any more."""
 
 
 @inner
 def _copy(source: FloatArray, target: FloatArray) -> None:
     for j in range(source.size):
         target[j] = source[j]
-
-
-@inner
-def _expect(walk: States, came: float, at: float, aim: float) -> None:
-    """Write what the last states let expect of the joints at ``aim`` as the next step.
-
-    Args:
-        walk: stands at ``at``, and came from ``came`` if that is another place.
-        came, at, aim: σ, on the same curves.
-    """
-    step, last = aim - at, at - came
-    known = last != 0.0 and abs(step) <= _FORESIGHT * abs(last)
-    for j in range(walk.q.shape[1]):
-        if known:
-            walk.q[NEXT, j], _, _ = joint_at(walk, HERE, j, -last, -step / last)
-        else:
-            rate = walk.dq[HERE, j] + 0.5 * step * walk.ddq[HERE, j]
-            walk.q[NEXT, j] = walk.q[HERE, j] + step * rate
 
 
 @inner
@@ -168,7 +125,7 @@ def sample_tcp(
     """
     each = (curves.position, curves.turning, curves.prescribed)
     width = max(curve.coefficients.shape[1] for curve in each)
-    work = _work(get_ident(), seeds.shape[1], prescribed.size, chain.joint.size, width)
+    work = walk_work(get_ident(), seeds.shape[1], prescribed.size, chain.joint.size, width)
     given = -1
     while True:
         failed, short, reached = _walk_all(
@@ -212,7 +169,7 @@ def _walk_all(
     given: int,
     states: States,
     conditioning: FloatArray,
-    scratch: _Work,
+    scratch: WalkWork,
 ) -> tuple[int, float, float]:
     """`sample_tcp`, with a negative length for how far the TCP stays short, where it is asked.
 
@@ -257,7 +214,7 @@ def _walk(
     given: int,
     states: States,
     conditioning: FloatArray,
-    scratch: _Work,
+    scratch: WalkWork,
 ) -> tuple[int, float, float]:
     """One run; see `_walk_all`.
 
@@ -268,12 +225,14 @@ def _walk(
     work, tube, walk = scratch.pose, scratch.tube, scratch.walk
     jerk, by_t, taylor = scratch.jerk, scratch.by_t, scratch.taylor
     set_places(solved, work)
-    # On these curves the walk stood at ``came`` before.
-    # From q = centre at ``origin`` on the tube is proven up to ``sure``; curves stay the same up to
+    # On these curves the walk stood at ``came`` before, or knows where it will; the conditioning
+    # there is ``ahead``.
+    # About q = centre at ``origin`` the tube is proven up to ``sure``; curves stay the same up to
     # ``border``.
     centre, slope, reach = scratch.centre, scratch.slope, np.inf
     slope[:] = 0.0
     origin = sure = border = came = samples.sigma[max(given, 0)]
+    ahead = np.inf
     if given >= 0:
         border = _border(samples, given)
     for k in range(given + 1, samples.sigma.size):
@@ -292,6 +251,8 @@ def _walk(
                 _copy(centre, states.q[k])
                 return k, (0.0 if pivots < SINGULAR else max(error, apart)), goal
             sure, border, came = goal, _border(samples, k), goal
+            if reach == np.inf:
+                reach = first_reach(states.dq[k])
             continue
         whole = goal - at
         copy_row(states, k - 1, walk, HERE)
@@ -300,27 +261,24 @@ def _walk(
         while at != goal:
             aim = goal
             if (sure - goal) * whole < 0.0:
-                # A tube from where the walk stands, as far as it can be proven.
-                _copy(walk.q[HERE], centre)
-                _copy(walk.dq[HERE], slope)
-                origin = at
-                side = stand(chain, centre, work, tube)
-                if k == given + 1 and at == samples.sigma[given]:
-                    side = 0
+                # Nothing is proven of a singular configuration.
+                known = k != given + 1 or at != samples.sigma[given]
                 left = border - at
-                step = left if abs(left) <= reach else np.copysign(reach, whole)
-                proven, at_once = False, True
-                if side == 0:
-                    # Nothing is proven of a singular configuration, and next to it little.
-                    step = 0.25 * np.copysign(min(abs(whole), FIRST * abs(border - at)), whole)
-                while side != 0 and not proven and (abs(step) > least or step == left):
-                    bound_jerk(curves, samples, k, at + 0.5 * step, 0.5 * abs(step), taylor, jerk)
-                    proven = keeps_branch(
-                        chain, solved, prescribed, walk, step, jerk, by_t, work, tube
+                # Even stretches, without a short one at the end.
+                parts = np.ceil(abs(left) / reach)
+                step = left if parts <= 1.0 else left / parts
+                strain = np.inf
+                while known and strain == np.inf and (abs(step) > least or step == left):
+                    origin, ahead, strain = prove(
+                        chain, solved, prescribed, curves, samples, k, came, at, step, scratch
                     )
-                    if not proven:
-                        step, at_once = _SHORTER * step, False
+                    if strain == np.inf:
+                        step *= _SHORTER
+                proven = strain < np.inf
                 if not proven or (abs(step) < hop_at and min(pivots, conditioning[k - 1]) < _NEAR):
+                    side = stand(chain, walk.q[HERE], work, tube) if known else 0
+                    if side == 0:
+                        step = 0.25 * np.copysign(min(abs(whole), FIRST * abs(left)), whole)
                     hop_at = 0.25 * abs(step)
                     hop = hop_over(
                         chain,
@@ -346,33 +304,44 @@ def _walk(
                     elif not proven:
                         conditioning[k] = min(pivots, conditioning[k - 1])
                         _copy(centre, states.q[k])
-                        _copy(centre, walk.q[NEXT])
+                        _copy(walk.q[HERE], walk.q[NEXT])
                         state_at(
                             chain, solved, prescribed, curves, samples, k, goal, walk, NEXT, work
                         )
                         return k, -1.0, at
                     sure = at
                     continue
+                _copy(walk.q[NEXT], centre)
+                _copy(walk.dq[NEXT], slope)
+                copy_row(walk, NEXT, walk, CAME)
+                came = origin
                 sure = border if step == left else at + step
-                if step != left:
-                    reach = (_LONGER if at_once else 1.0) * abs(step)
+                longer = abs(step) * min(_LONGER, np.sqrt(_STRAIN / strain))
+                reach = longer if step != left else max(reach, longer)
                 if (sure - goal) * whole < 0.0:
                     aim = sure
-            _expect(walk, came, at, aim)
-            error, met = state_at(
-                chain, solved, prescribed, curves, samples, k, aim, walk, NEXT, work
-            )
+            if aim == came:
+                copy_row(walk, CAME, walk, NEXT)
+                error, met = 0.0, ahead
+            else:
+                expect(walk, came, at, aim)
+                error, met = state_at(
+                    chain, solved, prescribed, curves, samples, k, aim, walk, NEXT, work
+                )
             sound = error < CONVERGED and met >= SINGULAR
             for j in range(size):
                 away = abs(walk.q[NEXT, j] - centre[j] - (aim - origin) * slope[j])
                 sound = sound and away <= tube.radius[j] + LEAST
             if sound:
-                came, pivots, at = at, min(pivots, met), aim
-                copy_row(walk, HERE, walk, CAME)
+                # What the tube is about tells more than where the walk comes from.
+                if (came - at) * whole <= 0.0 or came == aim:
+                    came = at
+                    copy_row(walk, HERE, walk, CAME)
+                pivots, at = min(pivots, met), aim
                 copy_row(walk, NEXT, walk, HERE)
             else:
                 # Newton's method went off: begin again, with a shorter way.
-                sure, reach = at, max(0.5 * abs(aim - at), 0.5 * least)
+                sure, came, reach = at, at, max(0.5 * abs(aim - at), 0.5 * least)
         conditioning[k] = pivots
         copy_row(walk, HERE, states, k)
     return -1, 0.0, samples.sigma[-1]

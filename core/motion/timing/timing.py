@@ -29,6 +29,10 @@ _ROUNDING = 1e-12
 """s, by which times may be off."""
 
 
+Motion = tuple[FloatArray, FloatArray, FloatArray]
+"""Positions, velocities and accelerations, (T, N) each."""
+
+
 @dataclass(frozen=True)
 class Settling:
     """How long the stamped motion rests for what follows it in time.
@@ -169,24 +173,32 @@ class Timing:
         left = np.append(self.begins(), self.duration)
         return np.diff(left) - self.path.route.dwell[1:]
 
-    def states_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def states_at(self, t: FloatArray, out: Motion | None = None) -> Motion:
         """Configuration, velocity and acceleration (T, N) at times t (T,) in s.
 
         Between samples the path is the quintic in ℓ that meets both samples' derivatives.
+
+        Args:
+            t: the times.
+            out: written and returned; None for new arrays.
         """
-        q, dq, ddq = (np.empty((len(t), self.path.q.shape[1])) for _ in range(3))
+        shape = len(t), self.path.q.shape[1]
+        q, dq, ddq = out or (np.empty(shape), np.empty(shape), np.empty(shape))
         t = np.ascontiguousarray(t)
         _drive(t, self._entered(t), self.intervals, self.along.states, q, dq, ddq)
         return q, dq, ddq
 
-    def driven_at(self, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def driven_at(self, t: FloatArray, out: Motion | None = None) -> Motion:
         """`states_at`, with time that comes up to speed when the motion begins."""
         if self.start == SUDDEN:
-            return self.states_at(t)
+            return self.states_at(t, out)
         stamped, rate, growth = self.start.stamped(t)
-        q, dq, ddq = self.states_at(stamped)
-        rate, growth = rate[:, None], growth[:, None]
-        return q, rate * dq, rate**2 * ddq + growth * dq
+        q, dq, ddq = self.states_at(stamped, out)
+        slow = np.flatnonzero((rate != 1.0) | (growth != 0.0))
+        rate, growth = rate[slow, None], growth[slow, None]
+        ddq[slow] = rate**2 * ddq[slow] + growth * dq[slow]
+        dq[slow] *= rate
+        return q, dq, ddq
 
     def place_at(self, t: FloatArray) -> FloatArray:
         """σ (T,) on the path at times t (T,) in s, with time that comes up to speed."""

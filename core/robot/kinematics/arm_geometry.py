@@ -69,12 +69,14 @@ class Recognised(NamedTuple):
         error: rad and m, how far the axes miss the ideal.
         coupling: (6, 6), whole numbers: the angles that the closed form speaks of are
             ``coupling @ q``. They differ from q where joints have followers.
+        uncoupling: (6, 6), its inverse.
     """
 
     family: Family
     geometry: ArmGeometry
     error: float
     coupling: FloatArray
+    uncoupling: FloatArray
 
     def angles(self, q: FloatArray) -> FloatArray:
         """Angles (..., 6) of the axes of joints with the values q (..., 6)."""
@@ -83,7 +85,7 @@ class Recognised(NamedTuple):
 
     def values(self, angles: FloatArray) -> FloatArray:
         """Reverse of `angles`."""
-        back: FloatArray = angles @ np.rint(np.linalg.inv(self.coupling)).T
+        back: FloatArray = angles @ self.uncoupling.T
         return back
 
 
@@ -107,7 +109,7 @@ def recognise(chain: Chain) -> Recognised | None:
     for family in (Family.SPHERICAL_WRIST, Family.PARALLEL_AXES):
         geometry, error = _geometry(lines, family)
         if error < NEAR:
-            return Recognised(family, geometry, error, coupling)
+            return Recognised(family, geometry, error, coupling, np.rint(np.linalg.inv(coupling)))
     return None
 
 
@@ -145,7 +147,8 @@ def _scara(chain: Chain) -> Recognised | None:
         centre_to_fourth=np.zeros(3),
     )
     error = max(misses)
-    return Recognised(Family.SCARA, geometry, error, np.eye(6)) if error < NEAR else None
+    coupling = np.eye(6)
+    return Recognised(Family.SCARA, geometry, error, coupling, coupling) if error < NEAR else None
 
 
 def _uncoupled(chain: Chain) -> tuple[Chain, FloatArray]:

@@ -371,12 +371,13 @@ def pull_acceleration(
 def poses(chain: Chain, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Rotations (M, 3, 3) and positions (M, 3) m of configurations (M, N)."""
     R, p = np.empty((q.shape[0], 3, 3)), np.empty((q.shape[0], 3))
-    _fill_poses(chain, q, R, p)
+    fill_poses(chain, q, R, p)
     return R, p
 
 
 @lean
-def _fill_poses(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
+def fill_poses(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
+    """Write what `poses` gives."""
     for m in range(q.shape[0]):
         pose(chain, q[m], R[m], p[m])
 

@@ -76,8 +76,9 @@ def test_what_runs_into_the_singularity_is_refused(name, straight) -> None:
     assert caught.value.move == 0
 
 
-def test_what_the_finest_samples_do_not_show_is_refused() -> None:
-    controller, program = line_past(*ARMS[0], 2e-4)
-    with pytest.raises(MotionError, match=r"wrist_3 would have to turn by .* too near") as caught:
+@pytest.mark.parametrize(("arm", "axis"), list(zip(ARMS, ("wrist_3", "J4", "A6"), strict=True)))
+def test_what_the_finest_samples_do_not_show_is_refused(arm, axis) -> None:
+    controller, program = line_past(*arm, 5e-5)
+    with pytest.raises(MotionError, match=rf"{axis} would have to turn by .* too near") as caught:
         controller.run(program)
     assert caught.value.move == 0
