@@ -345,3 +345,34 @@ def test_a_check_finds_damaged_lines(language: str) -> None:
     assert finding.span is not None
     assert finding.span.line == FRAME[language].partition("{}")[0].count("\n") + 2
     assert not [f for f in found if f.rule == "reader" and f.span == finding.span]
+
+
+@pytest.mark.parametrize(
+    ("setting", "whole"),
+    [
+        ("VelSet n,500;", "VelSet 100,5000;"),
+        ("AccSet 50,n;", "AccSet 100,100;"),
+        ("SpeedRefresh n;", "SpeedRefresh 100;"),
+        ("PathAccLim TRUE\\AccMax:=n,FALSE;", "PathAccLim FALSE,FALSE;"),
+    ],
+)
+def test_a_setting_made_of_what_is_damaged_is_not_known(setting: str, whole: str) -> None:
+    text = FRAME["abb"].replace("VAR num n;", "VAR num n:=3+;")
+    made = read("abb", HOME["abb"], setting, LOW["abb"], whole, LOW["abb"], text=text)
+    assert [bool(move.unsettled) for move in made.moves] == [False, True, False]
+    assert "line 2" in made.moves[1].unsettled
+
+
+def test_a_function_in_a_setting_runs_once() -> None:
+    text = (
+        f"MODULE demo\nFUNC num share()\n{LOW['abb']}\nRETURN 50;\nENDFUNC\nPROC main()\n{{}}\n"
+        "ENDPROC\nENDMODULE\n"
+    )
+    made = read("abb", HOME["abb"], "VelSet share(),5000;", LOW["abb"], text=text)
+    assert len(made.moves) == 3
+
+
+def test_a_speed_made_of_what_is_damaged_is_not_known() -> None:
+    text = FRAME["abb"].replace("VAR num n;", "VAR num n:=3+;")
+    made = read("abb", HOME["abb"], LOW["abb"].replace("v100", "v100\\V:=n"), text=text)
+    assert [bool(move.unsettled) for move in made.moves] == [False, True]

@@ -31,6 +31,7 @@ from ..values.records import PER_METRE, Record
 from ..values.scope import Scope
 from ..values.types import (
     JOINTTARGET,
+    NUM,
     ROBTARGET,
     SPEEDDATA,
     TOOLDATA,
@@ -273,14 +274,20 @@ class _MoveReader:
             return None
         use, evaluator = f"{self.bound.text} \\{name.upper()}", self.run.evaluator
         expression = self.bound.option(name)
-        unknown = find_unknown(evaluator.evaluate(expression, self.scope))
+        value = evaluator.evaluate(expression, self.scope)
+        unknown = find_unknown(value)
+        if unknown is not None and unknown.lost:
+            self.unsettled = self.unsettled or f"{use} depends on {unknown.reason}"
+            return None
         if unknown is not None:
             evaluator.answers.assumed(
                 expression.span,
                 f"{use} depends on {unknown.reason}: it is left out{answerable(unknown)}",
             )
             return None
-        return evaluator.number(expression, self.scope, use)
+        evaluator.check(value, NUM, use, expression.span)
+        assert isinstance(value, float)
+        return value
 
     def _speed(self) -> tuple[Speed, MovePart]:
         expression = self.bound.named("Speed")

@@ -18,7 +18,7 @@ from ..values.arguments import Bound, bind
 from ..values.evaluator import Evaluator
 from ..values.records import UNUSED_AXIS, VMAX
 from ..values.scope import Scope
-from ..values.types import BOOL, EXTJOINT, POSE, ROBTARGET, answerable, find_unknown
+from ..values.types import BOOL, EXTJOINT, NUM, POSE, ROBTARGET, answerable, find_unknown
 from .kinematics import RobotFunctions
 from .settings import SettingsInForce
 from .targets import Converter
@@ -105,9 +105,14 @@ def _vel_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
 def _number(run: SettingsRun, bound: Bound, index: int, otherwise: float, scope: Scope) -> float:
     """A num; ``otherwise`` where it is not known."""
     expression = bound.value(index)
-    unknown = find_unknown(run.evaluator.evaluate(expression, scope))
+    value = run.evaluator.evaluate(expression, scope)
+    unknown = find_unknown(value)
     if unknown is None:
-        return bound.number(run.evaluator, index, scope)
+        run.evaluator.check(value, NUM, bound.use(index), expression.span)
+        assert isinstance(value, float)
+        return value
+    if unknown.lost:
+        raise SourceError(f"{bound.text} depends on {unknown.reason}", bound.span)
     message = f"{bound.text} depends on {unknown.reason}: {otherwise:g} is taken"
     run.evaluator.answers.assumed(expression.span, message + answerable(unknown))
     return otherwise
@@ -157,6 +162,8 @@ def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     load = None
     if unknown is None:
         load = run.convert.load(run.evaluator, expression, scope)
+    elif unknown.lost:
+        raise SourceError(f"GripLoad depends on {unknown.reason}", invoke.span)
     else:
         message = f"GripLoad: the payload is {unknown.reason}; none is taken"
         run.out.notes.once("payload", message, invoke.span)

@@ -7,7 +7,6 @@ where a move does, it is refused.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -34,20 +33,18 @@ from ..motion.settings_instructions import SETS
 from ..motion.targets import Converter
 from ..syntax import tree
 from ..values.data import Globals
-from ..values.defaults import nominal
 from ..values.errors import BOOKED, NO_ROUTINE, NUMBERS, ProgramError
 from ..values.evaluator import Evaluator
 from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable, unknown_name
-from ..values.types import STRING, Scalar, Unknown, Value, find_unknown, interpreted, mismatch
+from ..values.types import STRING, Unknown, Value, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .flow import run_for, run_if, run_test, run_while
-from .instructions import INTERPRETED, MOVING, refusal
-from .kept import KEPT, REFUSED, written
+from .instructions import INTERPRETED, MOVING
+from .kept import KEPT, REFUSED
 from .recovery import Frame, Retry, TryNext, raised, recover
-from .traps import connect, share_written
-
-_HEAD = re.compile(r"\w+")
+from .stepped_over import keep, step_over_missing, step_over_unread
+from .traps import connect
 
 
 class _Returned(Exception):
@@ -211,7 +208,7 @@ class Interpreter:
 
     def leave_out(self, invoke: tree.Invoke, why: str) -> None:
         """Step over a move that cannot be driven."""
-        if self._open_move(SourceError(why, invoke.span), invoke.span):
+        if self.open_move(SourceError(why, invoke.span), invoke.span):
             return
         self.out.keep(invoke.span, invoke.text, "", stops=True)
         self.course.decided(invoke.span, f"{why}: the move is left out")
@@ -235,7 +232,7 @@ class Interpreter:
             except _Jump as jump:
                 index = self._after_jump(block, index, jump.goto, scope)
             except ProgramError as error:
-                self.evaluator.reader = ELSEWHERE
+                self.evaluator.reader, self.evaluator.setting = ELSEWHERE, False
                 if not recover(self, self._frames[-1], statements[index], error):
                     index += 1
 
@@ -297,25 +294,7 @@ class Interpreter:
         elif isinstance(statement, tree.Keyword):
             self._keyword(statement, scope)
         elif isinstance(statement, tree.Unread):
-            self._unread(statement, scope)
-
-    def _unread(self, statement: tree.Unread, scope: Scope) -> None:
-        """What is damaged: nobody knows what it does to what it names."""
-        step = self.tree.unread(statement, scope.home)
-        line = f"line {statement.span.line}"
-        head = _HEAD.match(self.out.text_of(statement.span))
-        if head is not None:
-            self.settings.lose(SETS.get(head[0].lower(), ()), f"{head[0]}, damaged in {line}")
-        if isinstance(statement.target, tree.Name):
-            reason = f"the value of {statement.target.text}, damaged in {line}"
-            with suppress(SourceError):  # a constant stays one
-                unknown = Unknown(reason, statement.span, lost=True)
-                self.evaluator.assign(statement.target, unknown, scope)
-        for body in step.calls:
-            share_written(self, body, f"a damaged call in {line}", statement.span)
-        moves = step.moves or any(map(self.analysis.moves, step.calls))
-        if not moves or not self._open_move(statement.error, statement.span):
-            self.out.keep(statement.span, "", "")
+            step_over_unread(self, statement, scope)
 
     def _keyword(self, statement: tree.Keyword, scope: Scope) -> None:
         if statement.word == "exit":
@@ -363,13 +342,13 @@ class Interpreter:
         handler = INTERPRETED.get(name)
         if handler is not None:
             self.evaluator.reader = self.out.move_index if name in MOVING else ELSEWHERE
+            self.evaluator.setting = name in SETS
             try:
-                self._refuse_lost(statement, scope)
                 handler(self, statement, scope)
             except SourceError as error:
                 if not self._gone_on(statement, error):
                     raise
-            self.evaluator.reader = ELSEWHERE
+            self.evaluator.reader, self.evaluator.setting = ELSEWHERE, False
             return
         if name in KEPT:
             self.keep(statement, scope)
@@ -378,35 +357,21 @@ class Interpreter:
         if routine is not None:
             self._call(routine, statement.arguments, scope, statement.span)
         else:
-            self._missing(statement, scope)
+            step_over_missing(self, statement, scope)
 
-    def _open_move(self, error: SourceError, span: Span) -> bool:
+    def open_move(self, error: SourceError, span: Span) -> bool:
         """Whether the program goes on behind a move that cannot be read, which stays open."""
         if not self.out.leaves_open(error, span):
             return False
         self.lost(span)
         return True
 
-    def _refuse_lost(self, statement: tree.Invoke, scope: Scope) -> None:
-        """Raises:
-        SourceError: a setting is made of what is damaged.
-        """
-        if statement.name not in SETS:
-            return
-        for argument in statement.arguments:
-            if argument.value is not None:
-                unknown = find_unknown(self.evaluator.evaluate(argument.value, scope))
-                if unknown is not None and unknown.lost:
-                    raise SourceError(
-                        f"{statement.text} depends on {unknown.reason}", statement.span
-                    )
-
     def _gone_on(self, statement: tree.Invoke, error: SourceError) -> bool:
         """Whether the program goes on behind an instruction that cannot be carried out: a move
         stays open, and of what a setting sets nobody knows the value."""
         settings = SETS.get(statement.name)
         if settings is None:
-            return statement.name in MOVING and self._open_move(error, statement.span)
+            return statement.name in MOVING and self.open_move(error, statement.span)
         if not self.course.answers.mends or isinstance(error, ProgramError):
             return False
         message = str(error).removeprefix(f"{error.span}: ")
@@ -416,44 +381,6 @@ class Interpreter:
         self.out.keep(statement.span, statement.text, "")
         return True
 
-    def _missing(self, statement: tree.Invoke, scope: Scope) -> None:
-        """Step over a routine whose text is not at hand, and that is no instruction.
-
-        Raises:
-            SourceError: it is an instruction that is refused, or looks like a slip of the pen.
-        """
-        span = statement.span
-        if statement.name in self.course.answers.skipped:
-            self.course.skips(statement.text, span)
-            why = "it is skipped, as the answers say"
-            self.out.keep(span, statement.text, why, device=True)
-        else:
-            try:
-                message = refusal(statement, self.data)
-            except SourceError as error:
-                if not self._open_move(error, span):
-                    raise
-                return
-            self.out.keep(span, statement.text, "", device=True)
-            self.course.stepped_over(statement.text, span, message)
-            self._leave_open(statement, scope)
-        self.evaluator.outputs.forget()
-
-    def _leave_open(self, statement: tree.Invoke, scope: Scope) -> None:
-        """Nobody knows what a routine that is not at hand makes of the data that it is given."""
-        for argument in statement.arguments:
-            name = argument.value
-            cell = scope.find(name.name) if isinstance(name, tree.Name) else None
-            if cell is None or cell.constant or not isinstance(cell.type, Scalar):
-                continue
-            assert isinstance(name, tree.Name)
-            if cell.dimensions and not name.path:
-                continue
-            reason = f"what {statement.text} may have made of {name.text}"
-            value = nominal(self.evaluator.evaluate(name, scope), cell.type)
-            unknown = Unknown(reason, statement.span, name.text, value)
-            self.evaluator.assign(name, unknown, scope)
-
     def fetched(self, statement: tree.Invoke, scope: Scope) -> tree.Routine | None:
         """A procedure of a module beside the program."""
         found = self.data.fetched_routine(statement.name, scope.home, statement.span)
@@ -461,34 +388,7 @@ class Interpreter:
 
     def keep(self, statement: tree.Invoke, scope: Scope) -> None:
         """Step over an instruction that does not move the robot; it stays as it stands."""
-        kept = KEPT[statement.name]
-        for argument in statement.arguments:
-            # Functions of the program itself may move the robot, even for a message's text.
-            called = () if argument.value is None else self.tree.called(argument.value, scope.home)
-            if argument.value is not None and any(map(self.analysis.moves, called)):
-                self.evaluator.evaluate(argument.value, scope)
-        if kept.writes:
-            self._fill(statement, scope)
-        self.out.keep(statement.span, statement.text, kept.why, kept.stops)
-        for argument in statement.arguments:
-            flag = argument.value
-            if (
-                argument.option == "timeflag"
-                and isinstance(flag, tree.Name)
-                and scope.find(flag.name)
-            ):
-                self.evaluator.assign(flag, False, scope)
-
-    def _fill(self, statement: tree.Invoke, scope: Scope) -> None:
-        """Data that a kept instruction writes have the user's answers, or no known value."""
-        for argument in written(statement.name, statement.arguments):
-            if not isinstance(argument.value, tree.Name):
-                continue
-            cell = scope.find(argument.value.name)
-            if cell is not None and not cell.constant:
-                name = argument.value.text
-                unknown = Unknown(f"what {statement.text} gave {name}", statement.span, name)
-                self.evaluator.fill(argument.value, unknown, scope, statement.name)
+        keep(self, statement, scope)
 
     def note_undeclared(self, name: tree.Name) -> None:
         message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "

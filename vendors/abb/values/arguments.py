@@ -59,8 +59,11 @@ class Bound:
 
     def number(self, evaluator: Numbers, index: int, scope: Scope) -> float:
         """A required argument that is a known num."""
-        use = f"{self.text}, argument {self.names[index]}"
-        return evaluator.number(self.required[index], scope, use)
+        return evaluator.number(self.required[index], scope, self.use(index))
+
+    def use(self, index: int) -> str:
+        """A required argument, to stand at the beginning of a message."""
+        return f"{self.text}, argument {self.names[index]}"
 
 
 def check_count(text: str, wanted: int, given: int, span: Span, names: Sequence[str] = ()) -> None:

@@ -70,6 +70,10 @@ class Evaluator:
     Args:
         special: functions that ask the emulated robot, by lower-case name.
         signals: what signals are, by lower-case name, where a backup says so.
+
+    Attributes:
+        setting: whether what is evaluated says how the robot drives from here on: no default is
+            taken for what is damaged.
     """
 
     def __init__(
@@ -84,6 +88,7 @@ class Evaluator:
         self.data = data
         self.reads = Reads()
         self.reader = ELSEWHERE
+        self.setting = False
         self.outputs = Outputs()
         self.answers = TypedAnswers(course, text_of)
         self._text_of = text_of
@@ -162,7 +167,7 @@ class Evaluator:
         if unknown is None:
             return value
         taken = nominal(value, type_)
-        if taken is None and unknown.lost and self.reader is ELSEWHERE:
+        if taken is None and unknown.lost and self.reader is ELSEWHERE and not self.setting:
             taken = default_of(type_)  # a wait, a message: nothing is driven by it
         if taken is None:
             raise refuse_unknown(unknown, use, span)
