@@ -89,3 +89,13 @@ def test_what_decides_that_no_move_is_reached_is_named(tmp_path) -> None:
     answers.write_text('[branches]\n"main.script:4" = 1\n', "utf-8")
     read = flyby.read(path, robot="ur/ur5e", answers=answers)
     assert flyby.emulate(read, robot="ur/ur5e").duration > 0
+
+
+def test_what_decides_of_a_program_that_goes_nowhere_is_named(tmp_path) -> None:
+    """It drives to where it stands, and then waits for orders."""
+    path = tmp_path / "main.src"
+    lines = "at=$AXIS_ACT\nPTP at\nLOOP\nIF next(at)>0 THEN\nPTP at\nENDIF\nENDLOOP"
+    path.write_text(KRL.format(lines), "utf-8")
+    program = flyby.read(path, robot="kuka/kr30-3")
+    with pytest.raises(MotionError, match=r"goes nowhere: .*, or say which way it goes in line "):
+        flyby.emulate(program, robot="kuka/kr30-3")

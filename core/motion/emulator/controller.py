@@ -9,7 +9,6 @@ from itertools import pairwise
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
-from ...door import spelt
 from ...errors import FaultCause, MotionError, Note
 from ...program.move import Move
 from ...program.program import Program
@@ -28,6 +27,7 @@ from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..model.motion_model import MotionModel
 from ..model.torque import WITHOUT_LIMIT
 from ..path.building import build_path
+from ..path.no_move import goes_nowhere
 from ..path.path import OverlapError, Path
 from ..path.route import RouteFinder
 from ..timing.arc_length import ArcLength
@@ -195,7 +195,7 @@ class Controller:
         for _ in range(_SKIPS):
             route = self._routes.find(program, start, skipped)
             if not route.moves:
-                raise _located(_goes_nowhere(skipped), program)
+                raise _located(_left_out(skipped) if skipped else goes_nowhere(program), program)
             try:
                 path = build_path(route, self.model, self.sampling)
             except OverlapError as overlap:
@@ -407,18 +407,11 @@ def _stands(robot: Robot, start: JointTarget) -> Note:
     )
 
 
-def _goes_nowhere(left_out: Sequence[int]) -> MotionError:
-    if left_out:
-        return MotionError(
-            "its blend overlaps a neighbouring one, so that the controller leaves the waypoint "
-            "out, and nothing is left that goes anywhere: make the blend smaller, or a stop",
-            min(left_out),
-        )
+def _left_out(waypoints: Sequence[int]) -> MotionError:
     return MotionError(
-        "the program goes nowhere: this and every other move ends where the robot stands; let it "
-        f"begin elsewhere ({spelt('start')})",
-        0,
-        cause=FaultCause.NOWHERE,
+        "its blend overlaps a neighbouring one, so that the controller leaves the waypoint out, "
+        "and nothing is left that goes anywhere: make the blend smaller, or a stop",
+        min(waypoints),
     )
 
 

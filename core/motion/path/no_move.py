@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...door import spelt
-from ...errors import MotionError, Span
+from ...errors import FaultCause, MotionError, Span
 from ...program.entry_point import listed
 from ...program.program import Program
-from ...program.question import Question, QuestionKind
+from ...program.question import QuestionKind
 
 _MOST = 4
 """Names that a message lists."""
@@ -20,7 +20,7 @@ def no_move(program: Program) -> MotionError:
     moving = any(entry.moves for entry in program.entries)
     asked = [question for question in program.questions if not question.answered]
     away = list(dict.fromkeys(q.key for q in asked if q.kind is QuestionKind.ROUTINE))
-    ways = [q for q in asked if q.kind in (QuestionKind.BRANCH, QuestionKind.LOOP)]
+    ways = _open_ways(program)
     helps = []
     if away:
         helps.append(
@@ -29,23 +29,41 @@ def no_move(program: Program) -> MotionError:
         )
     if ways and moving:
         helps.append(
-            f"nobody says which way it goes in line {_named(_lines(ways))}: say it in a file "
+            f"nobody says which way it goes in line {_named(ways)}: say it in a file "
             f"({spelt('answers')}; `flyby ask` writes one)"
         )
-    told = [q.key for q in program.questions if q.answered and q.table in ("values", "sequences")]
+    told = [q.key for q in program.questions if q.answered and q.kind is not QuestionKind.PAUSE]
     if moving and told and not helps:
         helps.append(
             f"the answers to {_named(told)} have it so: others may lead to one ({spelt('answers')})"
         )
     run = {program.name.casefold(), *(_routine(call.text) for call in program.calls)}
     others = [entry for entry in program.entries if entry.name.casefold() not in run]
-    if any(entry.moves for entry in others) or (moving and not helps):
+    if any(entry.moves for entry in others):
         helps.append(f"choose as the entry the routine that drives: {listed(program.entries)}")
     what = "reaches no move" if moving else "has no move"
-    why = "; or ".join(helps) or "nothing in it moves the robot"
+    none = "what it computes leads to none" if moving else "nothing in it moves the robot"
+    why = "; or ".join(helps) or none
     return MotionError(
         f"program {program.name!r} {what}: {why}",
         span=None if reading is None else Span(reading.main, 1, 1, 0, 0),
+    )
+
+
+def goes_nowhere(program: Program) -> MotionError:
+    """The error of a program of which every move ends where the robot stands, and what helps."""
+    ways = _open_ways(program)
+    helps = [f"let it begin elsewhere ({spelt('start')})"]
+    if ways:
+        helps.append(
+            f"say which way it goes in line {_named(ways)} in a file ({spelt('answers')}; "
+            "`flyby ask` writes one)"
+        )
+    return MotionError(
+        "the program goes nowhere: this and every other move ends where the robot stands; "
+        f"{', or '.join(helps)}",
+        0,
+        cause=FaultCause.NOWHERE,
     )
 
 
@@ -53,8 +71,11 @@ def _routine(call: str) -> str:
     return call.partition("(")[0].strip().casefold()
 
 
-def _lines(questions: Sequence[Question]) -> list[str]:
-    return list(dict.fromkeys(str(question.span.line) for question in questions))
+def _open_ways(program: Program) -> list[str]:
+    """Lines of the branches and loops that nobody decides."""
+    ways = (QuestionKind.BRANCH, QuestionKind.LOOP)
+    asked = {q.span.line for q in program.questions if q.kind in ways and not q.answered}
+    return list(map(str, sorted(asked)))
 
 
 def _named(names: Sequence[str]) -> str:

@@ -28,6 +28,8 @@ TABLES = (
     *("values", "sequences", "branches", "passes", "calls", "durations", "streams"),
     "signals",
 )
+STRUCTURE = "structure, with what is read of it here"
+"""What an answer is of which no more is known than the components that are used."""
 _LONGEST_KEY = 80
 """Characters of a statement that is a key as it stands."""
 _ROUND_SIGNS = re.compile(r" ?([^\w\s$]) ?")
@@ -219,6 +221,16 @@ class Course:
         asked = self._questions.get(place)
         if asked is not None and not asked.type:
             self._questions[place] = replace(asked, type=type_, example=example)
+
+    def used_with(self, text: str, component: str) -> None:
+        """What was asked turns out to be a structure, as a component of it is used."""
+        place = "values", key(text)
+        asked = self._questions.get(place)
+        if asked is None or asked.type not in ("", STRUCTURE):
+            return
+        fields = dict(asked.example) if isinstance(asked.example, Fields) else {}
+        shown = Fields({**fields, component: fields.get(component, 1.0)}.items())
+        self._questions[place] = replace(asked, type=STRUCTURE, example=shown)
 
     def withdraw(self, text: str) -> None:
         """What was asked is known after all, and not listed."""

@@ -250,7 +250,7 @@ class Endings(Generic[Block]):
         moving = self._analysis.moves(loop.body)
         moved = self._has_moved(passes)
         answer = host.course.answered_passes(loop.span)
-        if moving and not moved and answer is None and self._polls(passes):
+        if moving and not moved and self._polls(passes):
             return False
         if loop.endless and not self._has_way_out(loop):
             waiting = moving and not moved and answer is None

@@ -204,3 +204,51 @@ def test_what_an_interrupt_sends_is_not_written_by_it(tmp_path: Path) -> None:
     program = read(body, tmp_path)
     assert len(program.moves) == 2
     assert not [q for q in program.questions if q.key.lower() in ("$axis_act", "sent")]
+
+
+def test_what_functions_give_is_typed_as_it_is_used(tmp_path: Path) -> None:
+    """Their parts and what stands beside them say what they are: a frame, a status."""
+    body = (
+        'st=EKI_CheckBuffer("plan","goal")\nIF st.BUFF>0 THEN\n'
+        + START
+        + "ENDIF\nIF st.CONNECTED THEN\nHALT\nENDIF\nLIN whereIs(3):offs\nat=seen(1)\nc=at.Z+1\n"
+    )
+    asked = {question.key: question for question in read(body, tmp_path).questions}
+    status = asked['EKI_CheckBuffer("plan","goal")']
+    assert [name for name, _ in status.example] == ["BUFF", "CONNECTED"]
+    assert "structure" in status.type
+    assert {asked[key].type for key in ("whereIs(3)", "offs", "seen(1)")} == {"position"}
+
+
+def test_tools_that_were_answered_are_still_listed(tmp_path: Path) -> None:
+    """`flyby ask` with the answers so far loses none of them."""
+    body = START + "$TOOL=TOOL_DATA[3]\nPTP {X 900,Y 0,Z 700,A 0,B 90,C 0}\n"
+    for values in ("", '"TOOL_DATA[3]" = { Z = 50 }'):
+        listed = {q.key: q.answered for q in read(body, tmp_path, values).questions}
+        assert listed["TOOL_DATA[3]"] is bool(values)
+
+
+POLLED = """DEF m( )
+act = 0
+WHILE act >= 0
+SWITCH act
+CASE 1
+PTP {A1 0,A2 -90,A3 100,A4 0,A5 60,A6 0}
+CASE 2
+PTP {A1 20,A2 -90,A3 100,A4 0,A5 60,A6 0}
+ENDSWITCH
+act = 0
+ENDWHILE
+END
+"""
+
+
+def test_what_is_asked_of_a_loop_that_waits_for_orders_changes_nothing(tmp_path: Path) -> None:
+    """With the passes answered as they were taken, others still write what the loop waits for."""
+    from flyby.core.source.execution.answers_text import answers_text
+
+    bare = VENDOR.read(POLLED, "m.src", robot=KR30, answers=Answers(goes_on=True))
+    answers = tmp_path / "answers.toml"
+    answers.write_text(answers_text(bare.questions, "m.src"), "utf-8")
+    again = VENDOR.read(POLLED, "m.src", robot=KR30, answers=load_answers(answers))
+    assert len(bare.moves) == len(again.moves) > 0

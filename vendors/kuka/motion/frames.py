@@ -120,8 +120,9 @@ class Placements:
     def _remark(self, name: str, value: Struct, span: Span) -> None:
         missing = [f.upper() for f in FRAME_FIELDS if f not in value.fields]
         what = value.label or name.upper()
-        if value.shipped:
+        if value.shipped or self._course.lasting(what) is not None:
             self._course.value(what, About(span, QuestionKind.DATUM, *EXPECTED["frame"]))
+        if value.shipped:
             self._note(
                 what,
                 f"{what} is in no $config.dat at hand: a frame of zeros is assumed; answer it "

@@ -21,7 +21,7 @@ from .expected import AXIS_NAMES, EXPECTED
 from .frames import null_frame
 from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
 from .scope import Scope, Variable
-from .types import PREDEFINED, KrlTypeError, convert, no_component
+from .types import FRAME_FIELDS, PREDEFINED, KrlTypeError, convert, no_component
 from .values import (
     Array,
     Choice,
@@ -133,6 +133,7 @@ class Names:
         value = self.settled(cell)
         for step in path:
             if isinstance(value, Unknown):
+                self._used_with(value, step)
                 value = supposed_part(value, step)
             if value is None or isinstance(value, Unknown):
                 break
@@ -157,6 +158,18 @@ class Names:
         if cell.shipped and cell.type == "e6axis" and not path:
             return self._home(node, cell, value)
         return value
+
+    def _used_with(self, value: Unknown, step: str | tuple[int, ...]) -> None:
+        """A component of what nobody says is used: so it is a structure that is asked for."""
+        whole = value.key.endswith(")") or "." not in value.key
+        if not isinstance(step, str) or not value.key or not whole:
+            return
+        if step in FRAME_FIELDS:
+            self.course.used_as(value.key, *EXPECTED["frame"])
+        elif step.upper() in AXIS_NAMES:
+            self.course.used_as(value.key, *EXPECTED["axis"])
+        else:
+            self.course.used_with(value.key, step.upper())
 
     def _home(self, node: Name, cell: Variable, shipped: Value) -> Value:
         """A home that no file at hand says: the user's answer, or KUKA's own, with a note."""

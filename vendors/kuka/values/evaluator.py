@@ -173,7 +173,7 @@ class Evaluator:
 
     def _used(self, symbol: str, node: tree.Expression, value: Value, other: Value) -> None:
         """What an operator says of the type of a datum that nobody has set."""
-        if not isinstance(node, tree.Name) or not isinstance(value, Unknown):
+        if not isinstance(node, tree.Name | tree.Call) or not isinstance(value, Unknown):
             return
         if symbol in ("and", "or", "exor") or isinstance(other, bool):
             self.used_as(value, "bool")
