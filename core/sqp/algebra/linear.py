@@ -207,11 +207,11 @@ def _solve(
     """
     n = len(values)
     _switch_off(matrices, right, active, values)
-    exact = np.where(active, 0.0, 1.0)
+    exact = np.zeros(len(right))
     data = np.zeros(len(factors.rows))
     for i in range(len(exact)):
-        if i >= n:
-            exact[i] = -exact[i]
+        if not active[i]:
+            exact[i] = 1.0 if i < n else -1.0
         shift = delta if i < n else -delta
         data[places.diagonal[i]] = exact[i] + (shift if active[i] else 0.0)
     for j in range(n):
@@ -279,24 +279,38 @@ def refined(
         return 0.0
     work, better = np.empty_like(right), np.empty_like(right)
     left, step = np.empty_like(right), np.empty_like(right)
-    size_right = max(1.0, np.abs(right).max())
+    size_right = max(1.0, _largest(right))
     enough = share * size_right
     substitute(factors, right, better, work)
     before = np.inf
     for count in range(_REFINEMENTS + 1):
         _left(matrices, exact, right, better, left)
-        size = np.abs(left).max()
+        size = _largest(left)
         if count == 0 and not np.isfinite(size):
             return np.inf
         if not size < before:
             break
-        found[:] = better
+        for i in range(len(found)):
+            found[i] = better[i]
         before = size
         if size <= enough:
             break
         substitute(factors, left, step, work)
-        better += step
-    return before / size_right if np.isfinite(found).all() else np.inf
+        for i in range(len(better)):
+            better[i] += step[i]
+    return before / size_right if np.isfinite(_largest(found)) else np.inf
+
+
+@njit(cache=True, error_model="numpy")
+def _largest(values: FloatArray) -> float:
+    """Size of the largest entry; not a number where one is not finite. (Loops, here and above: NumPy's
+    expressions take ten times as long to compile.)"""
+    found = 0.0
+    for value in values:
+        if not np.isfinite(value):
+            return np.nan
+        found = max(found, abs(value))
+    return found
 
 
 @njit(cache=True, error_model="numpy")
@@ -309,7 +323,8 @@ def _left(
 ) -> None:
     """What is left of the right side, written to ``left``."""
     n = len(matrices.P_starts) - 1
-    left[:] = 0.0
+    for i in range(len(left)):
+        left[i] = 0.0
     for j in range(n):
         for k in range(matrices.P_starts[j], matrices.P_starts[j + 1]):
             left[matrices.P_rows[k]] += matrices.P[k] * found[j]

@@ -102,10 +102,10 @@ def advance(
         v: (n + m,) the values after it.
         share, dual: of the step that the rows' and the limits' multipliers take.
     """
-    at.v[:] = v
     for i in range(len(at.y)):
         at.y[i] += share * step.y[i]
     for k in range(len(v)):
+        at.v[k] = v[k]
         at.low[k] += dual * step.low[k]
         at.high[k] += dual * step.high[k]
     keep_near(at, box, mu, _LARGEST_RATIO)
