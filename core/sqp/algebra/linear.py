@@ -303,8 +303,8 @@ def refined(
 
 @njit(cache=True, error_model="numpy")
 def _largest(values: FloatArray) -> float:
-    """Size of the largest entry; not a number where one is not finite. (Loops, here and above: NumPy's
-    expressions take ten times as long to compile.)"""
+    """Size of the largest entry; not a number where one is not finite."""
+    # Loops, here and above: NumPy's expressions take ten times as long to compile.
     found = 0.0
     for value in values:
         if not np.isfinite(value):
