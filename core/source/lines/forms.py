@@ -241,7 +241,8 @@ class FormGrammar(Grammar):
             return _case(line, condition, begun)
         body = self._action(line, found)
         if not begun:
-            assert condition is not None
+            if condition is None:
+                raise InputError("a case with a value should stand first")
             return If(line.span, condition, body)
         return Otherwise(line.span, condition, body.statements[0])
 

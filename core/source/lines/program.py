@@ -93,7 +93,8 @@ def plain_lines(source: SourceText, comment: str = "") -> Iterator[Line]:
         comment: what begins a comment behind a statement, outside of quotes; ``""`` for none.
     """
     sign = re.escape(comment) or "(?!)"
-    spoken = re.compile(rf"(?:\"[^\"]*\"|(?!{sign}).)*")
+    quotes = "|".join(f"{q}[^{q}]*{q}" for q in "\"'" if not comment.startswith(q))
+    spoken = re.compile(rf"(?:{quotes}|(?!{sign}).)*")
     for found in _LINE.finditer(source.text):
         said = spoken.match(found[0])
         words = "" if said is None else said[0].strip()

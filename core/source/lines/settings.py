@@ -24,6 +24,9 @@ from .amounts import Units, stated, with_number
 from .expressions import USUAL, Datum, Spelling, parse
 from .statements import Line, Numbers, Operand, Set
 
+_LONGEST = 1000
+"""Characters of a line that is looked at."""
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -163,7 +166,7 @@ class Settings:
     def zone_of(self, numbers: Numbers) -> Zone:
         """The zone that the numbers of `operand` make."""
         (one,) = self._of(UseKind.ZONE)
-        size = numbers[0] * one.line[numbers.kind[0]].scale
+        size = numbers[0] * {**one.joint, **one.line}[numbers.kind[0]].scale
         if size == 0:
             return FINE
         if isinstance(self.zone, ZoneKind):
@@ -218,6 +221,8 @@ class Settings:
         def found(text: str) -> Iterator[Unsaid]:
             for line in re.finditer(r"[^\s;][^\r\n;]*", text):
                 said = line[0].rstrip()
+                if len(said) > _LONGEST:
+                    continue
                 words = [one.word for one in self.settings if one.pattern.fullmatch(said)]
                 words += [word for pattern, word in begins if pattern.match(said)]
                 place = line.start(), line.start() + len(said)

@@ -154,6 +154,16 @@ def test_a_zone_is_patched_in_place(old: str, zone: VendorZone, new: str) -> Non
     assert file.text == job.replace(f"100mm/sec {old} ACC", f"100mm/sec {new} ACC")
 
 
+def test_speeds_are_patched_below_the_override_and_in_their_own_unit() -> None:
+    lines = ["OVERRIDE=50%", "R[1]=400", "L P[1] R[1]mm/sec FINE", "L P[2] 600cm/min FINE"]
+    job = text(*lines, positions=pose(1, 400) + pose(2, 420))
+    program = FANUC.read(job, "job.ls")
+    assert [move.speed.tcp for move in program.moves] == pytest.approx([0.2, 0.05])
+    slower = (replace(m, speed=replace(m.speed, tcp=0.5 * m.speed.tcp)) for m in program.moves)
+    (file,) = FANUC.patch(program.with_moves(tuple(slower)), LR_MATE).values()
+    assert file.text == job.replace("R[1]=400", "R[1]=200").replace("600cm", "300cm")
+
+
 def test_what_an_offset_makes_is_no_number_of_the_text() -> None:
     lines = [f"PR[1,{k}]=0" for k in range(1, 7)]
     job = text(*lines, "L P[1] 100mm/sec FINE Offset,PR[1]", positions=pose(1, 400))

@@ -23,7 +23,7 @@ from flyby.core.source.lines.forms import FormGrammar, Found
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.moves import made_move
 from flyby.core.source.lines.positions import PositionForm
-from flyby.core.source.lines.program import Said
+from flyby.core.source.lines.program import Said, plain_lines
 from flyby.core.source.lines.settings import Setting, Settings
 from flyby.core.source.lines.statements import Drive, Line, NumberedPoint, Numbers, Situation
 from flyby.core.source.patch.uses import UseKind
@@ -266,3 +266,19 @@ def test_other_spellings_of_expressions() -> None:
     assert value("SIG(TRUE)", Grammar.spelling).word == "NOT"
     with pytest.raises(SourceError, match="COUNT has no index"):
         value("count", Spelling())
+
+
+def test_comments_behind_statements_are_none_of_them() -> None:
+    def said(text: str, sign: str) -> list[str]:
+        return [line.text for line in plain_lines(SourceText(text, "x"), sign)]
+
+    text = 'GO a ; there\n; nothing\nSAY "a; b" ; c\nSAY \'d;e\'\nSAY "open ; x\n'
+    assert said(text, ";") == ["GO a", 'SAY "a; b"', "SAY 'd;e'", 'SAY "open']
+    assert said("GO a ' there\nSAY \"it's\" 'x", "'") == ["GO a", 'SAY "it\'s"']
+    assert said("a; b\n", "") == ["a; b"]
+
+
+def test_what_may_move_the_robot_is_no_case_without_a_value() -> None:
+    with pytest.raises(SourceError, match="a case with a value should stand first"):
+        read("SELECT n\nELSE\nWAIT 1\nEND\n")
+    assert read("SELECT n\nEND\nWAIT 1\n", n=1.0).statements
