@@ -39,6 +39,8 @@ from .shape import LinkShape, TouchingLinks
 
 STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)
 """m/s² (3rd General Conference on Weights and Measures, 1901)."""
+_KEPT = 2000
+"""Poses of which solutions are kept, by arms with an arm angle."""
 
 
 @dataclass(frozen=True)
@@ -397,18 +399,20 @@ class Robot:
         write_pose(self.base_chain, values, base[:3], base[3])
         R = base[:3].T @ matrix[:3, :3]
         p = base[:3].T @ (matrix[:3, 3] - base[3])
-        return solve(
-            self.arm_chain,
-            self.joints,
-            self._ranges,
-            self.coupled_ranges,
-            self.recognised,
-            R,
-            p,
-            WantedAngle(measured, arm_angle)
-            if arm_angle is not None and measured is not None
-            else None,
-        )
+        arm = (self.arm_chain, self.joints, self._ranges, self.coupled_ranges, self.recognised)
+        if arm_angle is None or measured is None:
+            return solve(*arm, R, p)
+        key = (R.tobytes(), p.tobytes(), arm_angle)
+        if key not in self._found:
+            if len(self._found) >= _KEPT:
+                self._found.clear()
+            self._found[key] = solve(*arm, R, p, WantedAngle(measured, arm_angle))
+        return self._found[key]
+
+    @cached_property
+    def _found(self) -> dict[tuple[bytes, bytes, float], tuple[InverseSolution, ...]]:
+        """What was found with arm angles, which takes long, of poses that are asked for again."""
+        return {}
 
     def turns(self, q: ArrayLike) -> FloatArray:
         """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""
