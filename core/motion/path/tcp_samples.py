@@ -36,6 +36,9 @@ _ITERATIONS = 30
 CONVERGED = 1e-9
 """m and rad of pose error below which Newton's method has converged: one more step leaves nothing
 of it, and rates follow from the Jacobian there."""
+_EXACT = 1e-11
+"""m and rad below which it stops: rates are those of the Jacobian one step before, and difference
+quotients of what follows from them show what that is off."""
 _LONGEST_STEP = 0.3
 SINGULAR = 1e-8
 """Ratio of pivots of the Jacobian below which a sample counts as singular."""
@@ -184,7 +187,7 @@ def approach(
         scale = min(1.0, _LONGEST_STEP / longest) if longest > 0.0 else 1.0
         for j in range(6):
             q[solved[j]] += scale * error[j]
-        if best < CONVERGED:
+        if best < _EXACT:
             return best, conditioning
     return best, conditioning
 
