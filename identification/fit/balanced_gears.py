@@ -24,6 +24,8 @@ from .parameters import ParameterSet
 from .run_pool import RunPool
 from .runs import PreparedRun
 
+USED_UP = 3.0
+"""Slacks that a gear holds at rest beyond which slack adds nothing: tanh is within 0.5 % of one."""
 SLACK, WEIGHT, SPRING = (f"elasticity.{name}" for name in ("slack_rad", "weight", "spring_rad"))
 
 
@@ -62,7 +64,7 @@ def balanced(
     parameters: ParameterSet, values: FloatArray, runs: Sequence[PreparedRun]
 ) -> FloatArray | None:
     """Values (P,) with springs that balance the weight, and the slack that parameters start with;
-    None where no spring is fitted beside its joint's slack.
+    None where no spring is fitted beside the slack of a joint that has used it up.
 
     Args:
         parameters: with their starts, whose weights are taken.
@@ -75,11 +77,14 @@ def balanced(
         for j in range(runs[0].robot.size)
         if f"{SPRING}[{j}]" in place and f"{SLACK}[{j}]" in place
     ]
+    q = np.concatenate([run.q for run in runs])
+    held = np.abs(held_at_rest(parameters.model(values).elasticity, runs[0].robot, q))
+    usual = np.median(held, axis=0)
+    joints = [j for j in joints if usual[j] >= USED_UP * values[place[f"{SLACK}[{j}]"]]]
     if not joints:
         return None
     made = values.copy()
     lower, upper = parameters.bounds
-    q = np.concatenate([run.q for run in runs])
     for j in joints:
         slack, spring = place[f"{SLACK}[{j}]"], place[f"{SPRING}[{j}]"]
         if f"{WEIGHT}[{j}]" in place:
@@ -87,7 +92,7 @@ def balanced(
             made[weight] = parameters.start[weight]
         made[slack] = parameters.start[slack] or parameters.scale[slack]
         made[spring] = 0.0
-        held = held_at_rest(parameters.model(made).elasticity, runs[0].robot, q)[:, j]
+        weighed = held_at_rest(parameters.model(made).elasticity, runs[0].robot, q)[:, j]
         lever = np.sin(q[:, j])
-        made[spring] = -float(held @ lever) / max(float(lever @ lever), 1e-12)
+        made[spring] = -float(weighed @ lever) / max(float(lever @ lever), 1e-12)
     return np.clip(made, lower, upper)

@@ -70,6 +70,10 @@ def test_nothing_is_balanced_without_a_spring(runs, rough) -> None:
     assert balanced(rough.without(["elasticity.spring_rad[1]"]), rough.start[:4], runs) is None
 
 
+def test_slack_that_is_left_is_let_be(runs, rough) -> None:
+    assert balanced(rough, rough.start / OFF, runs) is None
+
+
 def test_slack_that_is_used_up_everywhere_is_found(runs, rough) -> None:
     """A fit stays with the spring at its bound and no slack, as one to real logs did."""
     astray = rough.start.copy()
