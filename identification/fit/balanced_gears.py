@@ -26,6 +26,8 @@ from .runs import PreparedRun
 
 USED_UP = 3.0
 """Slacks that a gear holds at rest beyond which slack adds nothing: tanh is within 0.5 % of one."""
+ANYWHERE = 0.1
+"""Share of the samples that must show slack."""
 SLACK, WEIGHT, SPRING = (f"elasticity.{name}" for name in ("slack_rad", "weight", "spring_rad"))
 
 
@@ -79,8 +81,8 @@ def balanced(
     ]
     q = np.concatenate([run.q for run in runs])
     held = np.abs(held_at_rest(parameters.model(values).elasticity, runs[0].robot, q))
-    usual = np.median(held, axis=0)
-    joints = [j for j in joints if usual[j] >= USED_UP * values[place[f"{SLACK}[{j}]"]]]
+    least = np.quantile(held, ANYWHERE, axis=0)
+    joints = [j for j in joints if least[j] >= USED_UP * values[place[f"{SLACK}[{j}]"]]]
     if not joints:
         return None
     made = values.copy()
