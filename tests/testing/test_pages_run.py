@@ -6,11 +6,13 @@ import contextlib
 import io
 import re
 import shutil
+import sys
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -59,7 +61,10 @@ def _run(page: str, folder: Path) -> Ran:
     """All blocks of a page in order, in one namespace, in a folder with examples and logs."""
     (folder / "examples").symlink_to(ROOT / "examples")
     _log_square(folder / "logs")
-    names: dict[str, Any] = {"__name__": "page", "__file__": str(ROOT / BESIDE.get(page, page))}
+    # Classes of a page look for the module that they stand in.
+    module = sys.modules["page"] = ModuleType("page")
+    names: dict[str, Any] = vars(module)
+    names["__file__"] = str(ROOT / BESIDE.get(page, page))
     printed = io.StringIO()
     with contextlib.chdir(folder), contextlib.redirect_stdout(printed):
         for block in BLOCKS[page]:

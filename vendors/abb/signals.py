@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from ...core.dialect import SignalWords
 from ...core.program.signal import Level, Meet, SetSignal, SignalAction, WaitSignal
 from ...core.source.text.conditions import ConditionWords, NoConditionError
-from .world_zones import world_zones
+
+if TYPE_CHECKING:
+    from ...core.errors import Note
+    from ...core.program.world_zone import WorldZone
+    from ...core.robot.model import Robot
+    from ...core.source.text.files import SourceFile
 
 _NAME = re.compile(r"[A-Za-z]\w*")
 _ON, _OFF = ("1", "high", "true"), ("0", "low", "false")
@@ -129,6 +136,14 @@ def _level_said(level: Level) -> str:
     return f"{level.name}={int(level.on)}"
 
 
+def _zones(
+    files: Mapping[str, SourceFile], robot: Robot
+) -> tuple[tuple[WorldZone, ...], tuple[Note, ...]]:
+    from .world_zones import world_zones  # late: it takes time
+
+    return world_zones(files, robot)
+
+
 def _spelt(name: str) -> str | None:
     return name if _NAME.fullmatch(name) else None
 
@@ -141,5 +156,5 @@ SIGNALS = SignalWords(
     event,
     meets=meets,
     together=together,
-    zones=world_zones,
+    zones=_zones,
 )

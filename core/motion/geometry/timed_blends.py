@@ -64,11 +64,13 @@ def timed_blend(
         factor: k.
 
     Returns:
-        None where a leg is none of joints, or has no programmed speed or acceleration, and where
-        the zone takes nothing of one or all of it.
+        None where a leg is none of joints, or has no programmed speed or acceleration, or a
+        programmed time (no log shows how these are blended), and where the zone takes nothing of
+        one or all of it.
     """
     ends, both = segments.ends, slice(i, i + 2)
     stated = np.isfinite(ends.joint_speed[both]) & np.isfinite(ends.joint_acceleration[both])
+    stated &= np.isinf(ends.duration[both])
     if (ends.kind[both] != JOINT_SEGMENT).any() or not stated.all():
         return None
     ways = [np.abs(segments.delta_q[i + k]).max() * reach.value for k, reach in enumerate(reaches)]

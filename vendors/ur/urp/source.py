@@ -29,7 +29,7 @@ from .xml_file import is_xml, parsed, unpacked
 
 _NAMED = 4
 """Waypoints that a note names at most."""
-_TREE = re.compile(rf"\ufeff?\s*(<\?xml[^>]*>)?\s*<{ROOT}\b")
+_TREE = re.compile(rf"\ufeff?\s*+(?:<\?xml[^>]*+>)?\s*+<{ROOT}\b")
 """How the text of a tree begins."""
 
 
