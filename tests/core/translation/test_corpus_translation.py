@@ -33,8 +33,6 @@ PLACES = {
 """m; where a new robot may stand so that it reaches."""
 MOST = 100
 """Moves of a program that are translated; what follows is more of the same: time."""
-LONG = 60
-"""Moves from which on a program is tried on one other robot only: time."""
 TOO_FAR = {
     ("palletising.mod", "ur"),
     ("box_sorter.mod", "ur"),
@@ -53,12 +51,16 @@ def entries() -> list[tuple[str, dict]]:
     return found
 
 
+def others(robot: str) -> list[str]:
+    return [new for new in ROBOTS if not robot.startswith(new)]
+
+
 CASES = [
     pytest.param(language, entry, new, id=f"{Path(entry['file']).name}-{new}")
-    for language, entry in entries()
-    for new in ROBOTS
-    if not entry["robot"].startswith(new)
+    for k, (language, entry) in enumerate(entries())
+    for new in others(entry["robot"])[k % 2 : k % 2 + 1]
 ]
+"""Each program on one other make, in turns: time."""
 
 
 @cache
@@ -80,8 +82,6 @@ def test_a_program_is_translated_or_refused_with_its_line(
         language, entry["file"], old, entry.get("answers"), tuple(entry.get("others", ()))
     )
     program = beginning(program)
-    if len(program.moves) > LONG and new != ("abb" if old.startswith("ur") else "ur"):
-        pytest.skip("long: tried on one other robot")
     refusals = []
     for place, name in ((place, name) for place in PLACES[new] for name in ROBOTS[new]):
         try:
