@@ -192,22 +192,32 @@ class _Proof:
         Args:
             wanted: m that they have to keep from there on.
         """
+        return [
+            finding
+            for part in parts_of(self.run.path)
+            for scene, pieces in self._owners(part)
+            if scene.left_out is not None
+            for finding in self._of_touching(scene.left_out, part, pieces, wanted)
+        ]
+
+    def _of_touching(
+        self, touching: TouchingPairs, part: tuple[int, int], pieces: list[int], wanted: float
+    ) -> list[Finding]:
+        """The same of the pairs of one move."""
         found: list[Finding] = []
         for slack in _SLACK:
-            if not (found := list(self._of_left_out(wanted, slack))):
+            apart = self._apart(touching, pieces[0], wanted + self.residual + slack)
+            if not apart:
+                break
+            met = [
+                (prover.scene, prover.prove(apart, pieces, wanted))
+                for prover, _ in self._of_part(part, [(touching.scene, pieces)])
+            ]
+            found = [(scene, finding) for scene, finding in met if finding is not None]
+            # What is near again once it was apart is so, wherever apart is said to begin.
+            if not found or any(finding.cause is FailureCause.NEAR for _, finding in found):
                 break
         return found
-
-    def _of_left_out(self, wanted: float, slack: float) -> Iterator[Finding]:
-        for part in parts_of(self.run.path):
-            for scene, pieces in self._owners(part):
-                if (touching := scene.left_out) is None:
-                    continue
-                apart = self._apart(touching, pieces[0], wanted + self.residual + slack)
-                for prover, _ in self._of_part(part, [(touching.scene, pieces)]) if apart else ():
-                    finding = prover.prove(apart, pieces, wanted)
-                    if finding is not None:
-                        yield prover.scene, finding
 
     def _apart(self, touching: TouchingPairs, piece: int, limit: float) -> list[Span]:
         """The spans on the move that a piece belongs to, less its ends: where bodies touch, until

@@ -47,10 +47,12 @@ class TouchingPairs(NamedTuple):
 
     Args:
         scene: of these pairs alone.
+        whole: of all pairs, these among them.
         before, behind: whether they may touch where the move begins, and where it ends.
     """
 
     scene: CollisionScene
+    whole: CollisionScene
     before: bool
     behind: bool
 
@@ -134,7 +136,7 @@ class CollisionScene:
         """
         other = self._of_pairs(~pairs)
         if pairs.any():
-            other.left_out = TouchingPairs(self._of_pairs(pairs), before, behind)
+            other.left_out = TouchingPairs(self._of_pairs(pairs), self, before, behind)
         return other
 
     def _of_pairs(self, which: NDArray[np.bool_]) -> CollisionScene:

@@ -86,12 +86,15 @@ class Shortfall:
         wanted: m.
         names: of the two bodies.
         sigma: of the place, from the waypoint.
+        touching: whether these bodies may touch at an end of the move: zones have to leave the
+            place alone, smaller ones do.
     """
 
     distance: float
     wanted: float
     names: tuple[str, str]
     sigma: float
+    touching: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,8 @@ class Clearing:
     """Looks at cells in a scene.
 
     Args:
-        scene: cell and tool.
+        scene: cell and tool. Pairs that are left out there, as they touch at an end of the move,
+            are looked at, too: where they do, the path is not to change.
         clearance: m to be kept.
         deviation: (N,) rad or m by which the links may deviate from the path.
         residual: m by which the real robot may deviate from the emulated one.
@@ -126,7 +130,12 @@ class Clearing:
         deviation: FloatArray | None = None,
         residual: float = 0.0,
     ) -> None:
-        self._scene = scene
+        touching = scene.left_out
+        self._scene = scene if touching is None else touching.whole
+        self._touching: frozenset[tuple[str, str]] = frozenset()
+        if touching is not None:
+            apart = touching.scene
+            self._touching = frozenset(map(apart.pair_names, range(len(apart.pairs))))
         self._wanted = max(clearance, LEAST) + residual
         deviations = deviation is not None and bool(np.any(deviation > 0.0))
         self._deviation = deviation if deviations else None
@@ -199,7 +208,13 @@ class Clearing:
             return None
         worst = int(np.argmin(short))
         names = self._scene.pair_names(int(pair[worst]))
-        return Shortfall(float(distance[worst]), float(wanted[worst]), names, float(sigma[worst]))
+        return Shortfall(
+            float(distance[worst]),
+            float(wanted[worst]),
+            names,
+            float(sigma[worst]),
+            names in self._touching,
+        )
 
     def _near_along(
         self,

@@ -98,12 +98,15 @@ class SizeSearch:
                 return (yield from self._undecided(work.low, work.high))
             yield from self._ask(work.low, work.middle, work.high)
             reason, cells = self._examine(work)
-            if reason is not None:
-                if self._outside(reason, work.middle):
+            outside = reason is not None and self._outside(reason, work.middle)
+            # What may touch there is reached by larger zones alone: the upper half tells which.
+            reached_later = outside and isinstance(reason, Shortfall) and reason.touching
+            if reason is not None and not reached_later:
+                if outside:
                     return SizeBracket(0.0, 0.0, reason)
                 found = SizeBracket(work.low, work.middle, reason)
                 ranges = [_Range(work.low, work.middle, cells)]
-            elif cells is None or any(map(len, cells)):
+            elif reached_later or cells is None or any(map(len, cells)):
                 ranges.append(_Range(work.middle, work.high, cells))
                 ranges.append(_Range(work.low, work.middle, cells))
         if found.fails is None:

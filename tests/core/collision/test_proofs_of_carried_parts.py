@@ -127,3 +127,12 @@ def test_a_carried_part_takes_clearance_that_the_bare_tool_has() -> None:
     assert laden.clearance == pytest.approx(0.02, abs=1e-3)
     assert set(laden.pair or ()) == {"crate", "wall"}
     assert proof(trip(lift=0.29), cell_with(FLOOR, WALL)).verdict is Verdict.VIOLATED
+
+
+@settings(max_examples=8, deadline=None)
+@given(via=st.floats(0.107, 0.16))
+def test_what_was_apart_is_not_let_near_again(via) -> None:
+    """However little it was lifted: no slack at the beginning swallows where it is near again."""
+    arc = MoveC(place(0.6, -0.2, 0.101), SLOW, FINE, tool=GRIP, via=place(0.6, 0.0, via))
+    made = proof(Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, arc)), cell_with(FLOOR), 0.005)
+    assert made.verdict is Verdict.VIOLATED and made.move == 2
