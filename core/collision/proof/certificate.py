@@ -148,7 +148,8 @@ def certify_stretch(
     if findings:
         scene, finding = min(findings, key=lambda found: _rank(found[1]))
         return reader.refused(scene, finding, nearest_of(met), wanted, left.used)
-    return reader.proven(met, resolution or 0.0, left.used, wanted)
+    near = proof.never_apart(wanted)
+    return reader.proven(met, resolution or 0.0, left.used, wanted, near)
 
 
 def _check(clearance: float, residual: float, resolution: float | None) -> None:
@@ -199,6 +200,16 @@ class _Proof:
             if scene.left_out is not None
             for finding in self._of_touching(scene.left_out, part, pieces, wanted)
         ]
+
+    def never_apart(self, wanted: float) -> tuple[int, ...]:
+        """Indices of the moves all along which such pairs are near: nothing is proven of them."""
+        path, found = self.run.path, dict[int, None]()
+        for part in parts_of(path):
+            for scene, pieces in self._owners(part):
+                limit = wanted + self.residual + _SLACK[0]
+                if scene.left_out and not self._apart(scene.left_out, pieces[0], limit):
+                    found[path.route.moves[int(path.pieces.segment[pieces[0]])]] = None
+        return tuple(found)
 
     def _of_touching(
         self, touching: TouchingPairs, part: tuple[int, int], pieces: list[int], wanted: float

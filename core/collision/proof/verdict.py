@@ -124,9 +124,21 @@ class VerdictReader:
         )
 
     def proven(
-        self, known: Sequence[Met], resolution: float, measured: int, wanted: float
+        self,
+        known: Sequence[Met],
+        resolution: float,
+        measured: int,
+        wanted: float,
+        near: Sequence[int] = (),
     ) -> Certificate:
-        """The certificate of a proof to within ``resolution`` m, of ``wanted`` m at least."""
+        """The certificate of a proof to within ``resolution`` m, of ``wanted`` m at least.
+
+        Args:
+            known: what was found.
+            resolution, wanted: see there.
+            measured: how much it took.
+            near: moves along which what touches at an end is never apart.
+        """
         clearance = min((part.proven for part in known), default=math.inf)
         if clearance == math.inf:
             message = "nothing is near that it could touch"
@@ -137,6 +149,9 @@ class VerdictReader:
                 "; a part, and what takes it or what it rests on, keep "
                 f"{_shown(wanted)} from where they are apart"
             )
+            if near:
+                moves = ", ".join(str(move + 1) for move in near)
+                message += f"; on move {moves} they never are, and nothing is proven of them"
         nearest = nearest_of(known)
         if nearest is None or nearest.nearest.kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.

@@ -136,3 +136,12 @@ def test_what_was_apart_is_not_let_near_again(via) -> None:
     arc = MoveC(place(0.6, -0.2, 0.101), SLOW, FINE, tool=GRIP, via=place(0.6, 0.0, via))
     made = proof(Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, arc)), cell_with(FLOOR), 0.005)
     assert made.verdict is Verdict.VIOLATED and made.move == 2
+
+
+def test_what_never_comes_apart_is_said() -> None:
+    """Slid along the floor: of the crate and the floor nothing is proven, and of which move."""
+    slid = Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, to(0.6, -0.2, 0.1), OFF))
+    made = proof(slid, cell_with(FLOOR))
+    assert made.proven
+    assert "on move 3 they never are, and nothing is proven of them" in made.message
+    assert "never are" not in proof(trip(), cell_with(FLOOR)).message
