@@ -20,6 +20,8 @@ from .actions import Action
 
 _WITHIN = 5e-5
 """s within which a crossing is located, and for which a space may be touched unseen."""
+_NOTHING = 1e-9
+"""m or rad by which a robot that stands on a zone's face may be said to move."""
 
 
 def with_zones(
@@ -68,7 +70,7 @@ def _located(zone: WorldZone, trajectory: Trajectory) -> list[tuple[float, float
         # Where no depth changes its sign, and none can meanwhile, nothing is crossed.
         room = np.abs(one) + np.abs(other) - between.fastest(begin) * (end - begin)[:, None]
         same = (one >= 0.0) == (other >= 0.0)
-        kept = same & ((room > 0.0) | np.isinf(one))
+        kept = same & ((room > -_NOTHING) | np.isinf(one))
         outside = (kept & (one < 0.0)).any(axis=1)
         open_ = ~outside & ~kept.all(axis=1)
         begin, end, one, other = begin[open_], end[open_], one[open_], other[open_]

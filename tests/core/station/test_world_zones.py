@@ -106,3 +106,11 @@ def test_a_cylinder_stands_on_its_foot_or_hangs_from_it(height: float) -> None:
     )
     held = zone.holds(places, np.zeros((5, 1)))
     assert held.tolist() == [True, True, False, False, False]
+
+
+def test_a_robot_that_stands_on_a_face_crosses_nothing() -> None:
+    """For an hour: it is not looked at in ever shorter steps."""
+    count = 900_000
+    position = np.tile([0.1, 0.0, 0.0], (count, 1))
+    run = driven(position, np.zeros((count, 1)), np.zeros((count, 1)))
+    assert not found(WorldZone("z", "one", "do", ball=((0.0, 0.0, 0.0), 0.1)), run)
