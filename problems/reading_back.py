@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from ..core.errors import FlybyError, Note
-from ..core.program.move import Move
-from ..core.program.origin import Origin
 from ..core.program.program import Program
+from .changes import Change, changes_of, with_changes
 
 ReadBack = Callable[[Program], Program]
 """Writes a program and reads what was written.
@@ -16,7 +15,6 @@ ReadBack = Callable[[Program], Program]
 Raises:
     FlybyError: a change has no place in the text.
 """
-_PARTS = ("target", "speed", "zone")
 
 
 @dataclass(frozen=True)
@@ -59,12 +57,8 @@ def read_as_written(given: Program, wanted: Program, read_back: ReadBack) -> Wri
         if [m.origin for m in given.moves] != [m.origin for m in wanted.moves]:
             raise
     search = _Search(given, wanted, read_back)
-    kept = search.added([], search.changes())
+    kept = search.added([], changes_of(given, wanted))
     return Written(read_back(search.program(kept)), search.refused)
-
-
-_Change = tuple[tuple[int, str], ...]
-"""Parts of moves that are one datum: (index of the move, name of the part)."""
 
 
 class _Search:
@@ -74,17 +68,7 @@ class _Search:
         self._given, self._wanted, self._read_back = given, wanted, read_back
         self.refused: dict[tuple[int, str], str] = {}
 
-    def changes(self) -> list[_Change]:
-        """All of them, those together that stand in one place."""
-        found: dict[Hashable, list[tuple[int, str]]] = {}
-        pairs = zip(self._given.moves, self._wanted.moves, strict=True)
-        for i, (old, new) in enumerate(pairs):
-            for part in _PARTS:
-                if getattr(old, part) != getattr(new, part):
-                    found.setdefault((part, _place(old, i, part)), []).append((i, part))
-        return [tuple(change) for change in found.values()]
-
-    def added(self, kept: list[_Change], more: Sequence[_Change]) -> list[_Change]:
+    def added(self, kept: list[Change], more: Sequence[Change]) -> list[Change]:
         """The changes kept, with those of some more that the text takes beside them."""
         if not more:
             return kept
@@ -101,18 +85,5 @@ class _Search:
         half = len(more) // 2
         return self.added(self.added(kept, more[:half]), more[half:])
 
-    def program(self, changes: Sequence[_Change]) -> Program:
-        """The program as it was with these changes."""
-        moves = list(self._given.moves)
-        for change in changes:
-            for i, part in change:
-                values = {part: getattr(self._wanted.moves[i], part)}
-                moves[i] = replace(moves[i], **values)
-        return self._given.with_moves(tuple(moves))
-
-
-def _place(move: Move, index: int, part: str) -> Hashable:
-    if move.origin is None:
-        return index
-    origin: Origin = getattr(move.origin, part)
-    return origin.numbers or (origin.span, move.origin.statement)
+    def program(self, changes: Sequence[Change]) -> Program:
+        return with_changes(self._given, self._wanted, changes)

@@ -29,6 +29,7 @@ from .changeable import Selection, select
 from .freed_stops import with_freed_stops
 from .multistart import improve
 from .options import Effort, Freedom, ViaCount, WaypointTask
+from .taken_back import without_idle_changes
 from .variables import make_variables
 from .via_selection import Counted, change_count, idle_points
 from .zones_alone import with_zones_of, zones_alone
@@ -103,10 +104,10 @@ class _Optimization:
         if found is not None and self.task.vias is ViaCount.CHANGE:
             found = self._counted(found)
         if found is not None:
-            found = self._as_read(program, found, read_back, notes)
+            found = self._as_read(program, self._bare(given, found), read_back, notes)
         if zones is not None and zones.cost < (self._cost(given) if found is None else found.cost):
             # Once more, as what is read back last is what is written.
-            found = self._as_read(program, zones, read_back, notes)
+            found = self._as_read(program, self._bare(given, zones), read_back, notes)
         before = measure(self.controller, given, proof)
         if found is None or found.cost >= self._cost(given):
             notes.append(Note("nothing better was found: this is the program as it was given"))
@@ -200,6 +201,14 @@ class _Optimization:
         whole = _Whole(program, task.rounding, blocks, chosen, notes)
         held = solve_round_verify(self._feasibility, whole)
         return None if held is None else self._judged(*held, task)
+
+    def _bare(self, given: Run, found: Counted) -> Counted:
+        """Without the changes that bring nothing."""
+
+        def judged(program: Program) -> Counted | None:
+            return self._judged(*self._feasibility.verified(program), found.task)
+
+        return without_idle_changes(given, found, judged)
 
     def _as_read(
         self,
