@@ -42,6 +42,14 @@ def xs(program):
     return [round(m.target.pose.position[0] * 1000) for m in program.moves]
 
 
+def test_an_old_copy_of_the_program_is_none_of_its_files(tmp_path):
+    text = module("Main", proc("main", "rPick;"), proc("rPick", move(1)))
+    old = module("MAIN(NOSTEPIN)", proc("main", "rPick;"), proc("rGone", move(2)))
+    path = folder(tmp_path, Main_mod=text, Main2_mod=old, Pick_mod=module("Pick"))
+    program = read_file(path / "Main.mod")
+    assert {Path(name).name for name in program.reading.files} == {"Main.mod", "Pick.mod"}
+
+
 def test_a_module_beside_is_taken_in_when_it_alone_declares_a_name(tmp_path):
     path = folder(
         tmp_path,

@@ -17,6 +17,7 @@ PROGRAM = ".pgf"
 MOST_BESIDE = 200
 """Files beside a program that are looked at; a folder with more is an archive."""
 
+_MODULE = re.compile(r"^[ \t]*MODULE[ \t]+(\w+)", re.IGNORECASE | re.MULTILINE)
 _LISTED = re.compile(r"<Module>\s*([^<]*?)\s*</Module>", re.IGNORECASE)
 
 
@@ -24,7 +25,8 @@ def collect(path: Path, options: ReadOptions) -> dict[str, SourceFile]:
     """The file itself, the others that the user names, and what stands beside it.
 
     Beside a program stand the modules of its folder, its list (``.pgf``), and, as in a backup,
-    the folder ``SYSMOD`` next to ``PROGMOD``. Those that are no text are left out.
+    the folder ``SYSMOD`` next to ``PROGMOD``. Those that are no text are left out, and old copies:
+    no controller loads a module beside another one of its name.
 
     Raises:
         InputError: a file that the user or a list names cannot be read.
@@ -39,12 +41,15 @@ def collect(path: Path, options: ReadOptions) -> dict[str, SourceFile]:
             _add_listed(listing, name, files, named)
     known = {_resolved(p) for p in named}
     around = _beside(path) if options.beside is None else options.beside
+    modules = {name for file in files.values() for name in _modules_in(file)}
     for beside in around:
         if _resolved(beside) not in known:
             try:
-                files[str(beside)] = read_source(beside)
+                file = read_source(beside)
             except FlybyError:
                 continue  # nobody has named it
+            if modules.isdisjoint(_modules_in(file)):
+                files[str(beside)] = file
     return files
 
 
@@ -123,6 +128,10 @@ def _resolved(path: Path) -> Path:
         return path.resolve()
     except OSError:
         return path
+
+
+def _modules_in(file: SourceFile) -> set[str]:
+    return {name.lower() for name in _MODULE.findall(file.text)}
 
 
 def _is_list(name: str) -> bool:
