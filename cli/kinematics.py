@@ -15,7 +15,7 @@ from .output.console import print_json, print_rich, print_table, warn
 
 if TYPE_CHECKING:
     from ..core.program.target import Configuration
-    from ..core.robot.inverse import InverseSolution
+    from ..core.robot.inverse.solution import InverseSolution
     from ..core.robot.model import Robot
     from ..core.spatial.pose import Pose
 

@@ -18,29 +18,28 @@ from ..spatial.pose import IDENTITY, Pose, Vector3
 from .assembly import Stage, Turn, assemble
 from .dynamics import Dynamics, JointTree, TreeNode
 from .inertia import Inertia
-from .inverse import LIMIT_SLACK, InverseSolution, Ranges, WantedAngle, equivalent_turns, solve
+from .inverse.arm_inverse import ArmInverse
+from .inverse.solution import InverseSolution
 from .joint import (
     COLUMNS,
     CoupledRange,
     ExternalAxis,
     ExternalRole,
     Joint,
-    JointKind,
     JointLimits,
     beyond_coupled,
 )
+from .joint_checks import check_joints
 from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
-from .kinematics.chain_kernels import jacobian, jacobians, poses
+from .kinematics.chain_kernels import jacobians, poses
 from .kinematics.chain_kernels import pose as write_pose
-from .seven_axes.arm_angle import AXES, ArmAngle, arm_angle_of, measure
+from .seven_axes.arm_angle import ArmAngle, arm_angle_at, arm_angle_of
 from .shape import LinkShape, TouchingLinks
 
 STANDARD_GRAVITY: Vector3 = (0.0, 0.0, -9.80665)
 """m/s² (3rd General Conference on Weights and Measures, 1901)."""
-_KEPT = 2000
-"""Poses of which solutions are kept, by arms with an arm angle."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,13 @@ class Robot:
                 f"robot {self.name} has {self.arm_size} joints but inertias of "
                 f"{len(self.links)} links; give one behind each joint, or none"
             )
-        self._check_joints()
+        check_joints(
+            self.name,
+            self.joints,
+            self.order,
+            self.coupled_ranges,
+            counts_arm_angle=self.arm_angle_reference is not None,
+        )
         for shape in self.shapes:
             if not 0 <= shape.link <= self.arm_size:
                 raise InputError(f"robot {self.name}: a shape belongs to link {shape.link}")
@@ -119,29 +124,6 @@ class Robot:
         for axis in self.external_axes:
             self.frame_stages(axis.name)
         self._carrying_track()
-
-    def _check_joints(self) -> None:
-        if self.order and sorted(self.order) != sorted(joint.name for joint in self.joints):
-            raise InputError(
-                f"robot {self.name}: the order {', '.join(self.order)} is none of its joints"
-            )
-        turning = [joint.name for joint in self.joints if joint.kind is JointKind.REVOLUTE]
-        if self.arm_angle_reference is not None and len(turning) != AXES:
-            raise InputError(f"robot {self.name}: arms of {AXES} turning axes have an arm angle")
-        summed = [name for coupled in self.coupled_ranges for name, _ in coupled.terms]
-        if not set(summed) <= set(turning):
-            raise InputError(
-                f"robot {self.name}: a range couples {', '.join(summed)}, but the arm's turning "
-                f"joints are {', '.join(turning)}"
-            )
-        for joint in self.joints:
-            for follower in joint.followers:
-                if follower.driver not in turning:
-                    raise InputError(
-                        f"robot {self.name}: behind joint {joint.name} a turn follows "
-                        f"{follower.driver!r}, but the arm's turning joints are "
-                        f"{', '.join(turning)}"
-                    )
 
     @property
     def has_held(self) -> bool:
@@ -195,10 +177,6 @@ class Robot:
             *(joint.name for joint in self.joints),
             *(axis.name for axis in self.external_axes),
         )
-
-    @cached_property
-    def _ranges(self) -> Ranges:
-        return Ranges.of(self.joints)
 
     @cached_property
     def limits(self) -> JointLimits:
@@ -353,20 +331,36 @@ class Robot:
 
     def arm_angle(self, q: ArrayLike) -> float | None:
         """The arm angle, rad, of a configuration (N,); None of an arm that counts none."""
-        return None if self.measured_arm_angle is None else self._arm_angle_at(q, np.empty(0))
+        measured = self.measured_arm_angle
+        if measured is None:
+            return None
+        return arm_angle_at(self.arm_chain, measured, self._arm_values(q), np.empty(0))
 
     def arm_angle_slope(self, q: ArrayLike) -> FloatArray:
-        """The derivative (n,) of the arm angle with respect to the arm's joints."""
+        """The derivative (n,) of the arm angle with respect to the arm's joints.
+
+        Raises:
+            InputError: the arm counts none.
+        """
+        if self.measured_arm_angle is None:
+            raise InputError(f"robot {self.name} has no arm angle")
         slope = np.empty(self.arm_size)
-        self._arm_angle_at(q, slope)
+        arm_angle_at(self.arm_chain, self.measured_arm_angle, self._arm_values(q), slope)
         return slope
 
-    def _arm_angle_at(self, q: ArrayLike, slope: FloatArray) -> float:
-        assert self.measured_arm_angle is not None
+    def _arm_values(self, q: ArrayLike) -> FloatArray:
         _, (rows,) = self._rows(q)
-        R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, self.arm_size))
-        jacobian(self.arm_chain, rows[0, : self.arm_size].copy(), R, p, J)
-        return float(measure(self.measured_arm_angle, R, p, J, slope))
+        return rows[0, : self.arm_size]
+
+    @cached_property
+    def _inverse(self) -> ArmInverse:
+        return ArmInverse(
+            self.arm_chain,
+            self.joints,
+            self.coupled_ranges,
+            self.recognised,
+            self.measured_arm_angle,
+        )
 
     def inverse(
         self,
@@ -385,8 +379,7 @@ class Robot:
             UnreachableError: there is none; it says by how much.
             InputError: an arm angle is asked of an arm that counts none.
         """
-        measured = self.measured_arm_angle
-        if arm_angle is not None and measured is None:
+        if arm_angle is not None and self.measured_arm_angle is None:
             raise InputError(f"robot {self.name} has no arm angle")
         if len(external) != len(self.external_axes):
             raise InputError(
@@ -399,29 +392,11 @@ class Robot:
         write_pose(self.base_chain, values, base[:3], base[3])
         R = base[:3].T @ matrix[:3, :3]
         p = base[:3].T @ (matrix[:3, 3] - base[3])
-        arm = (self.arm_chain, self.joints, self._ranges, self.coupled_ranges, self.recognised)
-        if arm_angle is None or measured is None:
-            return solve(*arm, R, p)
-        key = (R.tobytes(), p.tobytes(), arm_angle)
-        if key not in self._found:
-            if len(self._found) >= _KEPT:
-                self._found.clear()
-            self._found[key] = solve(*arm, R, p, WantedAngle(measured, arm_angle))
-        return self._found[key]
-
-    @cached_property
-    def _found(self) -> dict[tuple[bytes, bytes, float], tuple[InverseSolution, ...]]:
-        """What was found with arm angles, which takes long, of poses that are asked for again."""
-        return {}
+        return self._inverse.at(R, p, arm_angle)
 
     def turns(self, q: ArrayLike) -> FloatArray:
         """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""
-        every = equivalent_turns(self.joints, np.asarray(q, dtype=float))
-        if not self.coupled_ranges:
-            return every
-        names = [joint.name for joint in self.joints]
-        beyond = beyond_coupled(self.coupled_ranges, names, every)
-        return np.asarray(every[(beyond <= LIMIT_SLACK).all(axis=1)])
+        return self._inverse.ranges.turns(np.asarray(q, dtype=float))
 
     # Dynamics
 

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .inverse import FULL_TURN, SOLVERS
+from .inverse.arm_inverse import SOLVERS
+from .inverse.ranges import FULL_TURN
 from .kinematics.chain_kernels import poses
 from .model import Robot
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import MotionError
-from ..robot.inverse import InverseSolution
+from ..robot.inverse.solution import InverseSolution
 from ..robot.kinematics.arm_geometry import Family
 from ..robot.model import Robot
 from ..robot.posture import posture

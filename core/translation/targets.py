@@ -18,7 +18,7 @@ from ..program.speed import Speed
 from ..program.target import Configuration, JointTarget, PoseTarget
 from ..program.tool import FLANGE, WORLD, WorkObject
 from ..program.zone import FINE
-from ..robot.inverse import UnreachableError
+from ..robot.inverse.solution import UnreachableError
 from ..robot.kinematics.chain_kernels import pose
 from ..robot.model import Robot
 from ..robot.work_chain import work_chain

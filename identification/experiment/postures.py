@@ -12,7 +12,7 @@ import numpy as np
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
 from ...core.program.tool import WORLD, Tool
-from ...core.robot.inverse import UnreachableError
+from ...core.robot.inverse.solution import UnreachableError
 from ...core.robot.kinematics.chain_kernels import jacobians, poses
 from ...core.robot.model import Robot
 from ...core.robot.work_chain import work_chain

@@ -19,7 +19,7 @@ from ...errors import FaultCause, InputError, MotionError, Note
 from ...program.move import Move
 from ...program.target import Configuration, JointTarget, PoseTarget
 from ...robot.assembly import assemble
-from ...robot.inverse import UnreachableError
+from ...robot.inverse.solution import UnreachableError
 from ...robot.joint import JointKind
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.kinematics.tracking import track

@@ -126,6 +126,20 @@ def measure(
     return math.atan2(b, a)
 
 
+def arm_angle_at(chain: Chain, angle: ArmAngle, q: FloatArray, slope: FloatArray) -> float:
+    """The arm angle, rad, of a configuration.
+
+    Args:
+        chain: from the base to the flange, over the n joints.
+        angle: what it is measured by.
+        q: (n,).
+        slope: as in `measure`.
+    """
+    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, q.size))
+    jacobian(chain, np.ascontiguousarray(q), R, p, J)
+    return float(measure(angle, R, p, J, slope))
+
+
 @njit(cache=True, error_model="numpy")
 def wrapped(angle: float) -> float:
     """An angle, rad, in [-π, π]."""

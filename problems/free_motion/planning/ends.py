@@ -12,7 +12,7 @@ from ....core.collision.scene.scene import CollisionScene
 from ....core.errors import InputError, MotionError
 from ....core.program.target import JointTarget, PoseTarget, Target
 from ....core.program.tool import Tool, WorkObject
-from ....core.robot.inverse import UnreachableError
+from ....core.robot.inverse.solution import UnreachableError
 from ....core.robot.model import Robot
 from ....core.spatial.pose import Pose
 from .free_space import FreeSpace

@@ -17,7 +17,7 @@ import numpy as np
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import InputError
 from ....core.program.tool import WORLD
-from ....core.robot.inverse import UnreachableError
+from ....core.robot.inverse.solution import UnreachableError
 from ....core.robot.kinematics.tracking import track
 from ....core.robot.model import Robot
 from ....core.robot.work_chain import work_chain

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ....core.arrays import FloatArray
 from ....core.errors import MotionError
-from ....core.robot.inverse import UnreachableError
+from ....core.robot.inverse.solution import UnreachableError
 from ....core.robot.model import Robot
 from ..spray.trajectory import PaintTrajectory
 from .station import Station

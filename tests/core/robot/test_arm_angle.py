@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
 from flyby.core.registry import find_robot
-from flyby.core.robot.inverse import UnreachableError
+from flyby.core.robot.inverse.solution import UnreachableError
 from flyby.core.spatial.pose import Pose
 
 ALONG = [0, 1, 3, 4, 5, 6, 2]

@@ -13,7 +13,8 @@ from flyby.core.errors import FaultCause, InputError
 from flyby.core.registry import find_robot
 from flyby.core.robot.catalogue import load_robot
 from flyby.core.robot.catalogue_text import robot_text
-from flyby.core.robot.inverse import Ranges, UnreachableError, solve
+from flyby.core.robot.inverse.arm_inverse import ArmInverse
+from flyby.core.robot.inverse.solution import UnreachableError
 from flyby.core.robot.joint import HELD_WITHIN, CoupledRange
 from flyby.core.robot.posture import posture
 from flyby.core.spatial.pose import Pose
@@ -42,12 +43,11 @@ def test_closed_form_and_numerical_search_agree(data, robot) -> None:
     q = data.draw(configurations(robot, margin=0.1))
     pose = robot.flange_pose(q).matrix()
     R, p = np.ascontiguousarray(pose[:3, :3]), np.ascontiguousarray(pose[:3, 3])
-    ranges = Ranges.of(robot.joints)
-    given_, coupled = (robot.arm_chain, robot.joints, ranges), robot.coupled_ranges
-    exact = [one.q for one in solve(*given_, coupled, robot.recognised, R, p)]
+    arm = robot.arm_chain, robot.joints, robot.coupled_ranges
+    exact = [one.q for one in ArmInverse(*arm, robot.recognised).at(R, p)]
     assert min(turned(one - q) for one in exact) < 1e-6
     try:
-        searched = solve(*given_, coupled, None, R, p)
+        searched = ArmInverse(*arm, None).at(R, p)
     except UnreachableError:
         return  # a search need not find any
     for one in searched:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError
-from flyby.core.robot.inverse import UnreachableError
+from flyby.core.robot.inverse.solution import UnreachableError
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.robot.kinematics.arm_geometry import Family
 from flyby.core.spatial.pose import Pose

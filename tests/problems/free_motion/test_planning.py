@@ -16,7 +16,7 @@ from flyby.core.collision.proof.certificate import scenes_of
 from flyby.core.errors import InputError, MotionError
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import Radius
-from flyby.core.robot.inverse import UnreachableError
+from flyby.core.robot.inverse.solution import UnreachableError
 from flyby.core.robot.shape import Box
 from flyby.core.spatial.pose import Pose
 from flyby.problems.free_motion.planning.free_space import FreeSpace
