@@ -6,20 +6,18 @@ Where a move of the TCP arrives is found by walking down its nominal path.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
-from ...program.move import Move, MoveC, MoveJ, Opaque, Wait
+from ...program.move import Move, MoveC, MoveJ
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
 from ...program.tool import WORLD, Tool, WorkObject
-from ...program.zone import FINE, Zone
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
@@ -43,6 +41,7 @@ from .no_move import no_move
 from .path import Route
 from .programmed_speeds import programmed
 from .route_checks import arm_angle_notes, check_near, half_turns, is_arc
+from .route_legs import MoveEnd, RouteLegs, move_ends_of, rows_of
 from .tcp_samples import CONVERGED, States
 from .tcp_walk import sample_tcp
 from .unreachable import why_stranded
@@ -50,7 +49,6 @@ from .unreachable import why_stranded
 if TYPE_CHECKING:
     from ...dialect import ArcRules
 
-_START = -1
 _STRAIGHT = (
     "the three points of the arc lie on a line: it is driven as the line. Some controllers stop "
     "there: use a linear move"
@@ -68,32 +66,6 @@ class MoveGroup:
     tool: Tool
     work_object: WorkObject
     moves: list[int]
-
-
-@dataclass(frozen=True)
-class _Waypoint:
-    """A resolved end of a move: what happens there."""
-
-    zone: Zone
-    dwell: float = 0.0
-
-
-@dataclass
-class _Legs:
-    """Resolved moves, before those that go nowhere are dropped.
-
-    Args:
-        at_start: index of the move whose target is taken for the start; None if that is known.
-        straight: indices of arcs whose points lie on a line.
-        led: indices of moves of the TCP to an arm angle.
-    """
-
-    at_start: int | None = None
-    ends: list[Ends] = field(default_factory=list)
-    chains: list[Chain] = field(default_factory=list)
-    moves: list[int] = field(default_factory=list)
-    straight: list[int] = field(default_factory=list)
-    led: list[int] = field(default_factory=list)
 
 
 class RouteFinder:
@@ -154,10 +126,10 @@ class RouteFinder:
         self._targets.tolerated.clear()
         self._targets.ambiguous.clear()
         q = self._start(program, start, notes)
-        legs = _Legs(0 if notes else None)
+        legs = RouteLegs(0 if notes else None)
         for stage in self._stages(moves, skipped):
             q = self._drive(moves, stage, q, legs)
-        route = self._route(program, legs, _waypoints(program), notes)
+        route = self._route(program, legs, move_ends_of(program), notes)
         return replace(route, left_out=tuple(sorted(skipped)))
 
     def _start(self, program: Program, start: JointTarget | None, notes: list[Note]) -> FloatArray:
@@ -253,7 +225,7 @@ class RouteFinder:
         return stages
 
     def _drive(
-        self, moves: Sequence[Move], stage: MoveGroup, q: FloatArray, legs: _Legs
+        self, moves: Sequence[Move], stage: MoveGroup, q: FloatArray, legs: RouteLegs
     ) -> FloatArray:
         """Resolve the moves of a stage from configuration q; returns where it ends."""
         ends = self._ends(moves, stage, q, legs)
@@ -280,7 +252,9 @@ class RouteFinder:
         legs.moves += stage.moves
         return q
 
-    def _ends(self, moves: Sequence[Move], stage: MoveGroup, q: FloatArray, legs: _Legs) -> Ends:
+    def _ends(
+        self, moves: Sequence[Move], stage: MoveGroup, q: FloatArray, legs: RouteLegs
+    ) -> Ends:
         """Poses and prescribed axes at the ends of the stage's moves; configurations to come."""
         count, size = len(stage.moves), self._robot.size
         known = np.empty((count + 1, size))
@@ -391,31 +365,15 @@ class RouteFinder:
     def _route(
         self,
         program: Program,
-        legs: _Legs,
-        waypoints: dict[int, _Waypoint],
+        legs: RouteLegs,
+        waypoints: dict[int, MoveEnd],
         notes: list[Note],
     ) -> Route:
         """Join the stages and drop moves that go nowhere; their stops and waits stay."""
-        ends = _joined(legs.ends)
+        ends = legs.joined()
         segments = make_segments(ends)
         keep = segments.scale > _NOWHERE
-        zones: list[Zone] = []
-        owners: list[int] = []
-        dwell = [waypoints[_START].dwell]
-        for kept, move in zip(keep, legs.moves, strict=True):
-            here = waypoints[move]
-            if kept:
-                zones.append(here.zone)
-                owners.append(move)
-                dwell.append(here.dwell)
-                continue
-            dwell[-1] += here.dwell
-            if zones and (here.zone == FINE or zones[-1] == FINE):
-                zones[-1] = FINE
-            elif zones:
-                zones[-1], owners[-1] = here.zone, move
-            if move != legs.at_start:
-                notes.append(Note("goes nowhere: it is at its target already", move))
+        passed = legs.passed(keep, waypoints, notes)
         notes += half_turns(segments, keep, legs.moves)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
         notes += arm_angle_notes(self._robot, program, legs.led)
@@ -429,12 +387,12 @@ class RouteFinder:
         changes = [a != b for a, b in pairwise(speeds)]
         return Route(
             self._robot,
-            _rows(ends, which),
+            rows_of(ends, which),
             tuple(legs.chains[k] for k in which),
             tuple(legs.moves[k] for k in which),
-            tuple(zones[:-1]),
-            tuple(owners[:-1]),
-            np.array(dwell),
+            tuple(passed.zones[:-1]),
+            tuple(passed.owners[:-1]),
+            np.array(passed.dwell),
             np.array([False, *changes, False]),
             self._targets.solved,
             self._targets.prescribed,
@@ -453,35 +411,6 @@ def _turns_third(move: Move) -> bool:
 
 def _span(program: Program, move: int | None) -> Span | None:
     return None if move is None else program.moves[move].statement
-
-
-def _waypoints(program: Program) -> dict[int, _Waypoint]:
-    """Zone and dwell at the start and at the end of every move, stopping statements included."""
-    found = {_START: _Waypoint(FINE)}
-    index = _START
-    for statement in program.statements:
-        if isinstance(statement, Wait):
-            found[index] = _Waypoint(FINE, found[index].dwell + statement.duration)
-        elif isinstance(statement, Opaque):
-            if statement.stops:
-                found[index] = replace(found[index], zone=FINE)
-        else:
-            index += 1
-            found[index] = _Waypoint(statement.zone)
-    return found
-
-
-def _joined(parts: Sequence[Ends]) -> Ends:
-    return Ends(
-        *(
-            np.concatenate([getattr(part, name) for part in parts])
-            for name in Ends.__dataclass_fields__
-        )
-    )
-
-
-def _rows(ends: Ends, which: NDArray[np.int64]) -> Ends:
-    return Ends(*(getattr(ends, name)[which] for name in Ends.__dataclass_fields__))
 
 
 def _nominal(segments: Segments) -> TcpCurves:
