@@ -80,7 +80,7 @@ class SolutionProgress:
         self._last_x = point.x
         if last and at.within(self._options.tolerance):
             raise self.converged(point, multipliers, at)
-        if self.evidence(self.best.at, self.best.objective).away or self._is_away(point):
+        if not self._problem.closed and self._is_away(point):
             raise SolutionEnd(Ending.AWAY)
         if self.iterations >= self._options.max_iterations:
             raise SolutionEnd(Ending.LIMIT)
@@ -121,7 +121,7 @@ class SolutionProgress:
 
     def _is_away(self, point: Point) -> bool:
         far = is_far(float(np.abs(point.x).max()), self._first_farthest)
-        return far and not self._problem.closed
+        return far or self.evidence(self.best.at, self.best.objective).away
 
     def _remember(self, point: Point, multipliers: FloatArray, at: OptimalityResiduals) -> None:
         seen = self.as_best(point, multipliers, at)

@@ -21,7 +21,7 @@ from .problem.limited_memory import LimitedMemory
 from .problem.nlp import NLP
 from .problem.scaled import ScaledProblem
 from .progress import SolutionEnd, SolutionProgress
-from .qp.backends import BackendKind, make_backends
+from .qp.backends import BackendKind
 from .result import Result, Status, Timings
 from .sequential.method import Sequential
 from .sequential.model import NoSubproblemError
@@ -78,7 +78,7 @@ def solve(
     first = chosen(method, nlp, kind, options)
     earlier = structure_of if warm_start is None else warm_start
     before = None if earlier is None else earlier.workspace
-    workspace = make_workspace(nlp, make_backends(qp, fallback), before)
+    workspace = make_workspace(nlp, qp, fallback, before)
     try:
         return _Solution(nlp, options, kind, workspace, first, first == method).run(start)
     finally:

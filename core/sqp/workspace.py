@@ -7,9 +7,10 @@ from threading import Lock
 
 from .algebra.linear import SaddlePatterns
 from .algebra.matrices import Sparsity, identity
+from .problem.errors import NlpError
 from .problem.nlp import NLP
 from .problem.patterns import Pattern
-from .qp.problem import Backend
+from .qp.backends import BackendKind, make_backends
 from .qp.subproblems import Subproblems
 from .sequential.convexify import Convexifier
 from .sequential.elastic import Elastic
@@ -44,18 +45,29 @@ class Workspace:
 
 
 def make_workspace(
-    nlp: NLP, backends: tuple[Backend, ...], before: Workspace | None = None
+    nlp: NLP, qp: BackendKind | str, fallback: bool, before: Workspace | None = None
 ) -> Workspace:
     """A new workspace, or the one before where the problem has the same size and no other solution
-    uses it; the caller holds it and lets go of ``busy`` when done."""
+    uses it; the caller holds it and lets go of ``busy`` when done.
+
+    Args:
+        qp, fallback: see `make_backends`.
+
+    Raises:
+        NlpError: there is no such back end.
+    """
     size = (nlp.n, nlp.m)
     if before is not None and before.size == size and before.busy.acquire(blocking=False):
+        try:
+            before.subproblems.use(make_backends(qp, fallback, before.subproblems.known))
+        except NlpError:
+            before.busy.release()
+            raise
         before.jacobian.reopen()
         before.hessian.reopen()
         before.convexifier.forget()
-        before.subproblems.use(backends)
         return before
-    subproblems = Subproblems(backends)
+    subproblems = Subproblems(make_backends(qp, fallback))
     made = Workspace(
         size,
         Pattern("jacobian", (nlp.m, nlp.n)),

@@ -152,21 +152,18 @@ class Saddle:
             self.convex = of_dense is not None  # others are not factorised
             return of_dense
         pattern = self._patterns.of(P.pattern, A.pattern)
-        matrices = SaddleMatrices(
-            P.pattern.starts,
-            P.pattern.rows,
-            P.data.copy(),
-            A.pattern.starts,
-            A.pattern.rows,
-            A.data.copy(),
-        )
         n = len(q)
-        right = np.concatenate([q, target])
-        active = np.concatenate([~fixed, rows])
-        found = np.zeros(n + len(target))
-        shift = self._regularisation * max(1.0, P.largest())
+        found = np.empty(n + len(target))
         positive = _solve(
-            matrices, pattern.factors, pattern.places, right, active, values, found, shift
+            (P.pattern.starts, P.pattern.rows, P.data),
+            (A.pattern.starts, A.pattern.rows, A.data),
+            (q, target),
+            (fixed, values),
+            rows,
+            pattern.factors,
+            pattern.places,
+            self._regularisation,
+            found,
         )
         self.convex = bool(positive == n)
         return (found[:n], found[n:]) if positive >= 0 else None
@@ -185,35 +182,43 @@ class SaddleMatrices(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def _solve(
-    matrices: SaddleMatrices,
+    P: tuple[IntArray, IntArray, FloatArray],
+    A: tuple[IntArray, IntArray, FloatArray],
+    sides: tuple[FloatArray, FloatArray],
+    fixed: tuple[BoolArray, FloatArray],
+    rows: BoolArray,
     factors: Factors,
     places: EntryIndices,
-    right: FloatArray,
-    active: BoolArray,
-    values: FloatArray,
+    regularisation: float,
     found: FloatArray,
-    delta: float,
 ) -> int:
-    """See `Saddle.solve`; works in place. Number of positive pivots, -1 without a solution.
+    """See `Saddle.solve`. Number of positive pivots, -1 without a solution.
 
     Args:
-        matrices: overwritten.
+        P, A: starts, rows and data of either.
+        sides: q (n,) and the rows' targets (m,).
+        fixed: (n,) variables, and their values.
+        rows: (m,) active ones.
         factors, places: of their pattern.
-        right: (n + m,) q and the rows' targets; overwritten.
-        active: (n + m,) free variables and active rows.
-        values: (n,) of the variables that are not free.
+        regularisation: share of P's size.
         found: (n + m,) the solution is written there.
-        delta: shift of the factorised system.
     """
-    n = len(values)
-    _switch_off(matrices, right, active, values)
-    exact = np.zeros(len(right))
+    matrices = SaddleMatrices(P[0], P[1], P[2].copy(), A[0], A[1], A[2].copy())
+    n, m = len(sides[0]), len(sides[1])
+    right, exact = np.empty(n + m), np.empty(n + m)
+    active = np.empty(n + m, dtype=np.bool_)
+    size = 1.0
+    for value in matrices.P:
+        size = max(size, abs(value))
+    delta = regularisation * size
     data = np.zeros(len(factors.rows))
-    for i in range(len(exact)):
-        if not active[i]:
-            exact[i] = 1.0 if i < n else -1.0
-        shift = delta if i < n else -delta
-        data[places.diagonal[i]] = exact[i] + (shift if active[i] else 0.0)
+    for i in range(n + m):
+        active[i] = not fixed[0][i] if i < n else rows[i - n]
+        right[i] = sides[0][i] if i < n else sides[1][i - n]
+        sign = 1.0 if i < n else -1.0
+        exact[i] = 0.0 if active[i] else sign
+        data[places.diagonal[i]] = sign * (delta if active[i] else 1.0)
+    _switch_off(matrices, right, active, fixed[1])
     for j in range(n):
         for k in range(matrices.P_starts[j], matrices.P_starts[j + 1]):
             if places.P[k] >= 0:

@@ -89,6 +89,12 @@ class SparseMatrix:
         """Size of the largest entry."""
         return float(np.abs(self.data).max(initial=0.0))
 
+    def row_sizes(self) -> FloatArray:
+        """Size of each row's largest entry (rows,)."""
+        found = np.zeros(self.shape[0])
+        _raise_rows(self.pattern.rows, self.data, found)
+        return found
+
     def scipy(self) -> sparse.csc_matrix:
         """A SciPy matrix of 32-bit indices, as the back ends want it; it shares the data."""
         p = self.pattern
@@ -142,6 +148,12 @@ def _same(mine: IntArray, other: IntArray) -> bool:
     while same and count < len(mine):
         same, count = mine[count] == other[count], count + 1
     return same
+
+
+@njit(cache=True, error_model="numpy")
+def _raise_rows(rows: IntArray, data: FloatArray, found: FloatArray) -> None:
+    for k in range(len(data)):
+        found[rows[k]] = max(found[rows[k]], abs(data[k]))
 
 
 @njit(cache=True, error_model="numpy")

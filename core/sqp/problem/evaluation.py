@@ -17,7 +17,6 @@ from .arrays import matrix, numbers, scalar, vector
 from .errors import CallableError, NlpError
 from .nlp import NLP
 from .patterns import Pattern
-from .symmetry import Symmetry
 
 GRADIENT_SIZE = 100.0
 """Functions are scaled down so that no gradient entry at the start is larger (Wächter and Biegler,
@@ -69,7 +68,6 @@ class Evaluation:
         self.hessian_pattern = hessian
         self._residuals: tuple[bytes, FloatArray] | None = None
         self._residual_jacobian: tuple[bytes, sparse.csc_array] | None = None
-        self._symmetry = Symmetry()
         self._have_given: set[str] = set()
         self._plain = True
 
@@ -79,8 +77,7 @@ class Evaluation:
         if largest > GRADIENT_SIZE:
             self.objective_factor = max(GRADIENT_SIZE / largest, _LEAST_FACTOR)
         if self.nlp.m:
-            rows = np.zeros(self.nlp.m)
-            np.maximum.at(rows, point.J.pattern.rows, np.abs(point.J.data))
+            rows = point.J.row_sizes()
             large = rows > GRADIENT_SIZE
             self.constraint_factors[large] = np.maximum(GRADIENT_SIZE / rows[large], _LEAST_FACTOR)
         self._plain = self.objective_factor == 1.0 and bool((self.constraint_factors == 1.0).all())
@@ -137,7 +134,7 @@ class Evaluation:
         value = self._call("hessian", lambda: hessian(given, factor, factors))
         found = self.hessian_pattern.array(value)
         self._check_finite("hessian", found.data)
-        self._symmetry.check("hessian", found)
+        self.hessian_pattern.symmetry.check("hessian", found)
         return found
 
     def residual_hessian(self, x: FloatArray) -> sparse.csc_array:

@@ -9,6 +9,7 @@ from ...arrays import FloatArray
 from ..algebra.matrices import SparseMatrix, Sparsity, from_scipy
 from .arrays import matrix
 from .errors import NlpError
+from .symmetry import Symmetry
 
 
 class Pattern:
@@ -18,12 +19,16 @@ class Pattern:
         name: of the callable, for messages.
         shape: of its matrices.
         growing: whether entries outside the pattern extend it; else they are an error.
+
+    Attributes:
+        symmetry: holds such matrices' triangles against each other.
     """
 
     def __init__(self, name: str, shape: tuple[int, int], growing: bool = False) -> None:
         self._name = name
         self._shape = shape
         self._growing = growing
+        self.symmetry = Symmetry()
         self._known: Sparsity | None = None
         self._dense = False
         self._open = True

@@ -29,7 +29,8 @@ class ScaledProblem:
     def __init__(self, nlp: NLP, jacobian: Pattern, hessian: Pattern) -> None:
         self.nlp = nlp
         self.evaluation = Evaluation(nlp, jacobian, hessian)
-        self.x_lower, self.x_upper, self.c_lower, self.c_upper = nlp.bounds
+        self._bounds = nlp.bounds
+        self.x_lower, self.x_upper, self.c_lower, self.c_upper = self._bounds
         self.closed = bool(np.isfinite(self.x_lower).all() and np.isfinite(self.x_upper).all())
 
     def first_point(self, x0: FloatArray) -> Point:
@@ -51,7 +52,7 @@ class ScaledProblem:
 
     def violation(self, point: Point) -> float:
         """Largest violation of a constraint, unscaled."""
-        _, _, lower, upper = self.nlp.bounds
+        _, _, lower, upper = self._bounds
         return violation.largest(point.c / self.evaluation.constraint_factors, lower, upper)
 
     def objective(self, point: Point) -> float:
@@ -72,7 +73,7 @@ class ScaledProblem:
     def residuals(self, point: Point, multipliers: FloatArray) -> OptimalityResiduals:
         """How far a point is from a solution, unscaled; multipliers are the scaled ones."""
         factors = self.evaluation.objective_factor, self.evaluation.constraint_factors
-        return residuals(point.x, point.c, point.g, point.J, multipliers, self.nlp.bounds, factors)
+        return residuals(point.x, point.c, point.g, point.J, multipliers, self._bounds, factors)
 
     def result_residuals(
         self, x: FloatArray, multipliers: FloatArray
@@ -81,4 +82,4 @@ class ScaledProblem:
         unscaled ones."""
         f, c, g, J = self.evaluation.unscaled(x)
         ones = 1.0, np.ones(self.nlp.m)
-        return f, residuals(x, c, g, J, multipliers, self.nlp.bounds, ones)
+        return f, residuals(x, c, g, J, multipliers, self._bounds, ones)

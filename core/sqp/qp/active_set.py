@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray
 from ..algebra.linear import Saddle
+from ..algebra.matrices import SparseMatrix
+from . import active_set_kernels as kernels
 from .problem import QpSolution, QpStatus, QuadraticProgram
 
 _MENDED = 60
@@ -40,10 +42,7 @@ class WorkingSet:
 
 def shown_by(qp: QuadraticProgram, d: FloatArray, y: FloatArray, z: FloatArray) -> WorkingSet:
     """The sides whose multiplier is larger than their distance."""
-    sides = np.concatenate(
-        [_sides(qp.A @ d, y, qp.lower, qp.upper), _sides(d, z, qp.d_lower, qp.d_upper)]
-    )
-    return WorkingSet(len(y), sides)
+    return WorkingSet(len(y), kernels.shown(_columns(qp.A), _bounds(qp), d, y, z))
 
 
 def pushed_by(qp: QuadraticProgram, y: FloatArray, z: FloatArray) -> WorkingSet:
@@ -82,7 +81,7 @@ def settled(
             continue
         before = found
         shown = shown_by(qp, found.d, found.y, found.z)
-        wrong = int(np.count_nonzero(shown.sides != guess.sides))
+        wrong = kernels.different(shown.sides, guess.sides)
         patience = _PATIENCE if wrong < fewest else patience - 1
         if not wrong or not patience or wrong > _MENDED * left:
             break
@@ -93,12 +92,8 @@ def settled(
 
 def _contradictory(found: QpSolution, before: QpSolution) -> bool:
     """Whether more sides are expected to hold than can: nothing else makes multipliers leap so."""
-    return _largest(found) > _LEAP * max(1.0, _largest(before))
-
-
-def _largest(found: QpSolution) -> float:
-    sizes = np.abs(found.y).max(initial=0.0), np.abs(found.z).max(initial=0.0)
-    return float(max(sizes))
+    sizes = kernels.largest(found.y, found.z), kernels.largest(before.y, before.z)
+    return bool(sizes[0] > _LEAP * max(1.0, sizes[1]))
 
 
 def _without_first(
@@ -122,38 +117,23 @@ def _without_first(
 
 def error(qp: QuadraticProgram, found: QpSolution) -> float:
     """Largest violation of the optimality conditions."""
-    slope = qp.P @ found.d + qp.q + qp.A.transposed_times(found.y) + found.z
-    return max(
-        float(np.abs(slope).max(initial=0.0)),
-        _error_of_sides(qp.A @ found.d, found.y, qp.lower, qp.upper),
-        _error_of_sides(found.d, found.z, qp.d_lower, qp.d_upper),
-    )
+    matrices = _columns(qp.P), qp.q, _columns(qp.A)
+    return float(kernels.error(*matrices, _bounds(qp), found.d, found.y, found.z))
 
 
 def _of(qp: QuadraticProgram, working: WorkingSet, saddle: Saddle) -> QpSolution | None:
-    rows, bounds = working.sides[: working.rows], working.sides[working.rows :]
-    target = np.where(rows > 0, qp.upper, qp.lower)
-    values = np.where(bounds > 0, qp.d_upper, qp.d_lower)
-    system = saddle.solve(qp.P, qp.q, qp.A, rows != 0, target, bounds != 0, values)
+    """The solution of the system of a working set."""
+    system = saddle.solve(qp.P, qp.q, qp.A, *kernels.expected(working.sides, _bounds(qp)))
     if system is None:
         return None
-    d, y = system
-    slope = qp.P @ d + qp.q + qp.A.transposed_times(y)
-    return QpSolution(QpStatus.SOLVED, d, y, np.where(bounds != 0, -slope, 0.0))
+    matrices = _columns(qp.P), qp.q, _columns(qp.A)
+    z = kernels.bound_multipliers(*matrices, *system, working.sides)
+    return QpSolution(QpStatus.SOLVED, *system, z)
 
 
-def _sides(
-    value: FloatArray, multiplier: FloatArray, lower: FloatArray, upper: FloatArray
-) -> NDArray[np.int8]:
-    above = (upper - value < multiplier) | (lower == upper)
-    below = value - lower < -multiplier
-    return np.where(above, 1, np.where(below, -1, 0)).astype(np.int8)
+def _columns(matrix: SparseMatrix) -> kernels.Columns:
+    return matrix.pattern.starts, matrix.pattern.rows, matrix.data
 
 
-def _error_of_sides(
-    at: FloatArray, multiplier: FloatArray, lower: FloatArray, upper: FloatArray
-) -> float:
-    outside = np.maximum(at - upper, lower - at)
-    gap = np.where(multiplier > 0, np.abs(upper - at), np.abs(at - lower))
-    pushing = np.minimum(np.abs(multiplier), gap)
-    return float(np.maximum(outside, pushing).max(initial=0.0))
+def _bounds(qp: QuadraticProgram) -> kernels.Bounds:
+    return qp.lower, qp.upper, qp.d_lower, qp.d_upper

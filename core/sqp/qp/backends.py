@@ -5,6 +5,7 @@ Clarabel is the default: see docs/reference/sqp.md for the measurements behind i
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 
 from ..problem.errors import NlpError
@@ -33,8 +34,13 @@ _FALLBACK = {
 }
 
 
-def make_backends(kind: BackendKind | str, fallback: bool) -> tuple[Backend, ...]:
+def make_backends(
+    kind: BackendKind | str, fallback: bool, known: Mapping[str, Backend] | None = None
+) -> tuple[Backend, ...]:
     """The back end, and the one that takes over where it fails.
+
+    Args:
+        known: back ends by name that need not be made.
 
     Raises:
         NlpError: there is no such back end.
@@ -44,7 +50,8 @@ def make_backends(kind: BackendKind | str, fallback: bool) -> tuple[Backend, ...
     except ValueError:
         raise NlpError(f"qp: one of {', '.join(BackendKind)}, not {kind!r}") from None
     kinds = (first, _FALLBACK[first]) if fallback else (first,)
-    return tuple(_make(k) for k in kinds)
+    known = known or {}
+    return tuple(known.get(k) or _make(k) for k in kinds)
 
 
 def _make(kind: BackendKind) -> Backend:

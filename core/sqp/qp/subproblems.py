@@ -26,20 +26,21 @@ class Subproblems:
         backends: the first one is asked first.
 
     Attributes:
+        known: back ends by name that are set up.
         seconds: spent since `use` was called last.
         used: name of the back end that was asked last.
     """
 
     def __init__(self, backends: tuple[Backend, ...]) -> None:
-        self._known: dict[str, Backend] = {}
+        self.known: dict[str, Backend] = {}
         self._saddle = Saddle()
         self.use(backends)
 
     def use(self, backends: tuple[Backend, ...]) -> None:
         """Begin a solution with these back ends; those known already stay as they are set up."""
         for backend in backends:
-            self._known.setdefault(backend.name, backend)
-        self._backends = tuple(self._known[backend.name] for backend in backends)
+            self.known.setdefault(backend.name, backend)
+        self._backends = tuple(self.known[backend.name] for backend in backends)
         self.seconds = 0.0
         self.used = self._backends[0].name
 

@@ -75,8 +75,11 @@ class Sequential:
             start: where that began, with derivatives: its slopes are a measure of distances.
         """
         self.multipliers = multipliers
+        at = self._visit(point, 0.0, "")
+        if not self.progress.iterations:
+            hot_started(point, self.given)
         self._prepare(point, start)
-        self._iterate(point)
+        self._iterate(point, at)
 
     def _prepare(self, point: Point, start: Point) -> None:
         """What the iteration begins with."""
@@ -116,22 +119,18 @@ class Sequential:
             self.model.expect(warm.bound_multipliers * self.problem.evaluation.objective_factor)
         return self.problem.from_user(warm.multipliers)
 
-    def _iterate(self, point: Point) -> NoReturn:
+    def _iterate(self, point: Point, at: OptimalityResiduals) -> NoReturn:
         """Steps until the solution ends by an exception."""
-        length, kind = 0.0, ""
         while True:
-            at = self._visit(point, length, kind)
-            if not kind and not self.progress.iterations:
-                hot_started(point, self.given)
             step = self._step(point, at)
             old, point = point, step.point
-            length, kind = step.length, step.kind
             self.multipliers = self._sober(step.multipliers, point)
             self.hessian.moved(old, point, self.multipliers)
             size = float(np.abs(point.x - old.x).max())
             still = size <= _ROUNDING * max(1.0, float(np.abs(point.x).max()))
             self.stalls = self.stalls + 1 if still else 0
             self.progress.iterations += 1
+            at = self._visit(point, step.length, step.kind)
 
     def _visit(self, point: Point, length: float, kind: str) -> OptimalityResiduals:
         return self.progress.visit(point, self.multipliers, length, kind, self.model.shift)
