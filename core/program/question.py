@@ -22,6 +22,7 @@ class QuestionKind(StrEnum):
     ROUTINE = "routines that are not at hand"
     BRANCH = "branches of unknown condition"
     LOOP = "loops without a known end"
+    STREAM = "motion that a computer sends"
     PAUSE = "calls, waits and outputs that may take time"
 
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flyby
-from flyby.core.errors import InputError, Span
+from flyby.core.errors import FlybyError, InputError, Span
 from flyby.core.source.execution.streams import Stream, load_stream
 
 SPAN = Span("a.mod", 1, 1, 0, 0)
@@ -111,3 +111,50 @@ def test_radians_are_said_by_the_header(tmp_path) -> None:
     file = tmp_path / "sent.csv"
     file.write_text("time,j1_rad\n0,1\n1,2\n")
     assert load_stream(file).joints[:, 0].tolist() == [1.0, 2.0]
+
+
+IN_A_BRANCH = """def demo():
+  while True:
+    q = read_input_float_register(0)
+    if q != 0:
+      servoj([q,0,0,0,0,0], t=0.008)
+    end
+    sync()
+  end
+end
+"""
+"""Nobody decides whether it moves, and it moves by what a computer sends alone."""
+IN_A_THREAD = """def demo():
+  thread follow():
+    while True:
+      speedj([0.1,0,0,0,0,0], 1.0, 0.01)
+    end
+  end
+  run follow()
+  while True:
+    socket_read_ascii_float(1)
+    sync()
+  end
+end
+"""
+
+
+@pytest.mark.parametrize(("text", "name"), [(IN_A_BRANCH, "servoj"), (IN_A_THREAD, "speedj")])
+def test_a_program_that_only_streams_asks_for_the_stream_and_drives_it(text, name, tmp_path):
+    file, answers = tmp_path / "demo.script", tmp_path / "answers.toml"
+    file.write_text(text)
+    with pytest.raises(FlybyError, match=rf"\[streams\] {name} = .*time,j1,j2"):
+        flyby.emulate(flyby.read(file, robot=ROBOTS["ur"]))
+    asked = flyby.ask(file, robot=ROBOTS["ur"]).toml
+    assert f'#{name} = "joints.csv"' in asked
+    (tmp_path / "joints.csv").write_text(table("ur"))
+    answers.write_text(asked.replace(f"#{name}", name))
+    run = flyby.emulate(flyby.read(file, robot=ROBOTS["ur"], answers=answers))
+    assert run.duration == pytest.approx(3.0, rel=0.15)
+
+
+@pytest.mark.parametrize("language", list(ROBOTS))
+def test_a_stream_is_asked_for(language, tmp_path) -> None:
+    (tmp_path / FILES[language]).write_text(TEXT[language])
+    asked = flyby.ask(tmp_path / FILES[language], robot=ROBOTS[language]).toml
+    assert f'#{KEYS[language]} = "joints.csv"' in asked

@@ -47,6 +47,14 @@ class Analysis(Generic[Block]):
 
         return self._once("moves", block, False, find)
 
+    def sent(self, block: Block) -> bool:
+        """Whether what a computer sends moves the robot in a block or in what it calls."""
+
+        def find() -> bool:
+            return any(step.sent for step in self._reached(block, _NONE_LEFT_OUT))
+
+        return self._once("sent", block, False, find)
+
     def move_count(self, block: Block) -> int:
         """How many statements in a block, and in the routines that it calls, move the robot."""
         return sum(step.moves for step in self._reached(block, _NONE_LEFT_OUT))

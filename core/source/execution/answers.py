@@ -263,6 +263,29 @@ class Course:
         )
         return told
 
+    def sent(self, name: str, span: Span) -> None:
+        """A computer sends the motion at a statement; listed among the program's questions.
+
+        Args:
+            name: of the function or instruction that takes it.
+            span: of the statement.
+        """
+        told = any(
+            stands_at(k, name, span) or stands_in(key(name), k) for k in self.answers.streams
+        )
+        self._ask(
+            Question(
+                QuestionKind.STREAM,
+                "streams",
+                name,
+                span,
+                "file",
+                meanwhile="the robot is taken to stay where it is",
+                example="joints.csv",
+                answered=told,
+            )
+        )
+
     def stream(self, text: str, span: Span) -> Stream | None:
         """What is sent to the robot at a statement, if the user says it and it was not yet sent."""
         for name, stream in self.answers.streams.items():

@@ -15,6 +15,7 @@ _TABLES = {
     "branches": "at a line: the branch taken, 1 for the first, 0 for ELSE or none",
     "passes": "at a line: how often a loop runs",
     "calls": "routines whose text is not at hand, and that move nothing",
+    "streams": "a file of joints over time (CSV: time,j1,j2,… in s and degrees) that drives there",
     "durations": "s that the robot stands at a call, a wait or an output; a signal's name will do",
 }
 _HEAD = """\

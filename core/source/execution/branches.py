@@ -143,6 +143,12 @@ class Branches(Generic[Block]):
                     number,
                     f"branch {number} of {count}, the first that moves the robot, is taken",
                 )
+        for number, leads, _ in ways:
+            if leads is None and ask.sent(written[number - 1]):
+                return number, (
+                    f"branch {number} of {count}, the first in which a computer moves the robot, "
+                    "is taken"
+                )
         if may[-1] and (otherwise is None or self._leads_to(otherwise) is None):
             return 0, "no branch that moves the robot: taken as not fulfilled"
         for number, leads, _ in ways:

@@ -37,6 +37,7 @@ class Step(Generic[Block]):
 
     Args:
         moves: it moves the robot itself, or nobody knows whether it does.
+        sent: what a computer sends moves the robot while it runs, and is not at hand.
         reads: names of the data that its own expressions read; of a statement with blocks in it:
             its conditions.
         writes: names of the data that it may write itself, arguments by reference among them.
@@ -55,6 +56,7 @@ class Step(Generic[Block]):
     """
 
     moves: bool = False
+    sent: bool = False
     reads: frozenset[str] = NOTHING
     writes: frozenset[str] = NOTHING
     made_of: frozenset[str] = NOTHING

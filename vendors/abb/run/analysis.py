@@ -169,6 +169,7 @@ class RapidTree:
         brought = frozenset(_given(written(name, statement.arguments)) if filled else ())
         return Step(
             moves=name in MOVING,
+            sent=name in KEPT and KEPT[name].sent,
             writes=brought | given,
             made_of=names,
             outputs=handed if name in WRITING else NOTHING,

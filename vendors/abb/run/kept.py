@@ -21,11 +21,13 @@ class Kept:
         why: what it does, for the note; empty if nothing needs to be said.
         stops: the robot comes to rest before it, or waits in it.
         writes: data that it names get values that only the running controller has.
+        sent: a computer sends the robot's motion while it runs.
     """
 
     why: str
     stops: bool = False
     writes: bool = False
+    sent: bool = False
 
 
 _IO = Kept("I/O does not move the robot")
@@ -51,6 +53,7 @@ _STREAM = Kept(
     "a sensor moves the robot by what it sends (EGM): not driven, the robot is taken to stand "
     "where it is afterwards",
     stops=True,
+    sent=True,
 )
 _SENSOR = Kept("what the sensor says of its motion is not known: it is taken to stand still")
 _BELT = Kept("the conveyor is taken to stand, with the part where its work object is", stops=True)

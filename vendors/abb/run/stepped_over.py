@@ -46,6 +46,8 @@ def keep(run: SteppingRun, statement: tree.Invoke, scope: Scope) -> None:
             run.evaluator.evaluate(argument.value, scope)
     if kept.writes:
         _fill(run, statement, scope)
+    if kept.sent:
+        run.course.sent(statement.text, statement.span)
     run.out.keep(statement.span, statement.text, kept.why, kept.stops)
     for argument in statement.arguments:
         flag = argument.value

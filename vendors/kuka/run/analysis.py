@@ -173,15 +173,20 @@ class KrlTree:
             calls = (*functions, body)
             return Step(writes=written, made_of=names, calls=calls, asks=True)
         outputs: frozenset[str] | None = NOTHING
+        known = None if call.name in NATIVE else kept(call.name)
         if call.name not in NATIVE:
-            known = kept(call.name)
             if call.name == "pulse":
                 first = call.arguments[0] if call.arguments else None
                 outputs = self.outputs(first, home) if isinstance(first, tree.Name) else None
             elif known is None or known.outputs:
                 outputs = None
         return Step(
-            writes=written, made_of=names, outputs=outputs, calls=functions, asks=bool(functions)
+            sent=known is not None and known.sent,
+            writes=written,
+            made_of=names,
+            outputs=outputs,
+            calls=functions,
+            asks=bool(functions),
         )
 
     def _handed(self, call: tree.Call, home: Module) -> Iterator[str]:

@@ -101,7 +101,9 @@ class Calls:
             self._forget_datum(Name(call.span, name, name.upper()), call, scope)
         if why.outputs:
             self._writes.pulsed(statement.call, scope)
-        self._keeping.keep(statement.span, statement.call.text, why.why, why.stops)
+        if why.sent:
+            self._course.sent(call.text, statement.span)
+        self._keeping.keep(statement.span, call.text, why.why, why.stops)
 
     def _forget(self, call: Call, scope: Scope) -> None:
         """Data that a kept call may have written have no known value any more."""

@@ -18,6 +18,7 @@ class Kept:
         writes: data that it names get values that only the running controller has.
         outputs: it may write outputs.
         brings: lower-case names of further data that get such values.
+        sent: a computer sends the robot's motion while it runs.
     """
 
     why: str
@@ -25,6 +26,7 @@ class Kept:
     writes: bool = False
     outputs: bool = False
     brings: tuple[str, ...] = ()
+    sent: bool = False
 
 
 _SETUP = Kept("it prepares a technology package and does not move the robot")
@@ -64,6 +66,7 @@ _TABLE: tuple[tuple[str, Kept], ...] = (
             "sensors decide its course at run time: the robot is taken to stay where it is",
             stops=True,
             writes=True,
+            sent=True,
         ),
     ),
     (

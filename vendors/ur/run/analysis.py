@@ -25,7 +25,9 @@ from ..values.outputs import read_by, written_by
 _EXITS = {"break": Exit.LOOP, "continue": Exit.PASS, "halt": Exit.PROGRAM}
 
 
-_MOVING = frozenset({*MOVES, *words("servoj servoc speedj speedl")})
+_SENT = words("servoj servoc servol speedj speedl")
+"""What a computer sends moves the robot by them."""
+_MOVING = MOVES | _SENT
 
 
 class ScriptTree:
@@ -35,9 +37,12 @@ class ScriptTree:
 
     Args:
         blocks: the statements of all files.
+        streamed: names of the functions that drive the robot by what a computer sends, where the
+            user says what that is.
     """
 
-    def __init__(self, blocks: Iterable[tree.Block]) -> None:
+    def __init__(self, blocks: Iterable[tree.Block], streamed: Iterable[str] = ()) -> None:
+        self._moves = MOVES.union(streamed)
         self._functions: defaultdict[str, list[tree.Define]] = defaultdict(list)
         for block in blocks:
             for statement in all_statements(block):
@@ -72,7 +77,8 @@ class ScriptTree:
         foreign = {name for name in called if name not in self._functions}
         names = frozenset[str]().union(*map(self.reads, expressions))
         return Step(
-            moves=not foreign.isdisjoint(MOVES),
+            moves=not foreign.isdisjoint(self._moves),
+            sent=not foreign.isdisjoint(_SENT - self._moves),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
             made_of=names,

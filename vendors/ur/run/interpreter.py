@@ -186,8 +186,8 @@ class Interpreter:
         if isinstance(statement, Assign) and statement.value is call:
             node = statement
         span = self.texts.span_of(node)
-        self.out.keep(span, name, "", entry.stops, entry.device)
-        if entry.kind:
+        driven = self.out.keep(span, name, "", entry.stops, entry.device)
+        if entry.kind and not driven:
             self.out.notes.group(entry.kind, name, span)
         if isinstance(call, StartThread):
             return Unknown(f"what {name} returns", span)

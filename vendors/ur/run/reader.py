@@ -46,6 +46,7 @@ from ..syntax.texts import Texts
 from ..urp.changes.tree_file import TreeFile
 from ..urp.script_in_place import script_of_nodes
 from ..urp.source import named_error, named_nodes, source_of, source_of_text
+from ..values.instructions import driven_by
 from .analysis import ScriptTree
 from .entry import run_program
 from .interpreter import Interpreter
@@ -157,5 +158,5 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
 def _read(texts: Texts, main: str, options: ReadOptions, given: bool) -> Program:
     blocks = [parse(texts, which) for which in range(len(texts.sources))]
     call = blocks.pop(0) if given else ()
-    run = Interpreter(texts, ScriptTree(blocks), options)
+    run = Interpreter(texts, ScriptTree(blocks, driven_by(options.answers.streams)), options)
     return run_program(run, blocks, main, options.entry, call)

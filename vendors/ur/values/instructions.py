@@ -6,11 +6,17 @@ interfaces) for PolyScope 3.x to 5.x, and the manuals of the add-ons named below
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ....core.door import spelt
 from ....core.errors import LeftOpenError, Span
+from ....core.source.execution.answers import stands_in
 from ....core.source.text.lexer import words
+
+_PLACE = re.compile(r":\d+$")
+"""The end of a key that is the place of a statement, ``file:line``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +145,18 @@ def known_names() -> set[str]:
     return set(QUERIES) | {name for entry in KEPT for name in entry.names}
 
 
+def driven_by(streams: Iterable[str]) -> frozenset[str]:
+    """The functions by which a computer drives the robot where the user says what it sends.
+
+    Args:
+        streams: the keys of the answers: statements, or the places of statements.
+    """
+    keys = list(streams)
+    if any(_PLACE.search(key) for key in keys):
+        return STREAMS.names
+    return frozenset(name for name in STREAMS.names if any(stands_in(name, key) for key in keys))
+
+
 def streamed(name: str, span: Span) -> LeftOpenError:
     """The error that a program drives by a stream alone.
 
@@ -148,7 +166,7 @@ def streamed(name: str, span: Span) -> LeftOpenError:
     return LeftOpenError(
         f"{name} drives the robot in steps of a control loop, which are not emulated, and there is "
         "nothing else to drive: say where it drives in a file of joints over time "
-        f'({spelt("answers")}: [streams] {name} = "joints.csv"), or write the motion as movej, '
-        "movel or movep",
+        f'({spelt("answers")}: [streams] {name} = "joints.csv", whose first line is '
+        "time,j1,j2,j3,j4,j5,j6, in s and degrees), or write the motion as movej, movel or movep",
         span,
     )
