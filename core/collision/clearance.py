@@ -22,8 +22,8 @@ from ..handling.handling import Handling
 from ..motion.path.path import Path
 from ..program.program import Program
 from ..program.tool import Tool
-from .scene.handled_pairs import touching
-from .scene.scene import TOUCH, CollisionScene
+from .scene.handled_pairs import RESTING, counted_distances, set_aside
+from .scene.scene import TOUCH, CollisionScene, TouchingPairs
 
 STEP = 0.01
 """rad (or m of a linear axis) from one configuration that is looked at to the next, about."""
@@ -111,6 +111,7 @@ class ClearanceMeter:
         self._program = program
         self._handling = handling
         self._scenes: dict[Tool, CollisionScene | None] = {}
+        self._smaller: dict[Tool, CollisionScene] = {}
         self._recent: tuple[Tool, Arrangement, CollisionScene] | None = None
         self.notes: list[Note] = []
 
@@ -135,13 +136,15 @@ class ClearanceMeter:
             scene = self._scene(first + move)
             if scene is None:
                 continue
+            scene = self._set_aside(scene, first + move, rows)
             own = _own_pairs(scene)
             told: list[Approach | None] = []
-            left_out = self._left_out(scene, first + move, rows)
-            for side, chosen in enumerate((~own & ~left_out, own)):
+            for side, chosen in enumerate((~own, own)):
                 pairs = np.flatnonzero(chosen)
                 near = max(limits[side], min(self._cell.clearance, within))
                 met = self._nearest(scene, rows, pairs, near)
+                if scene.left_out is not None and not side:
+                    met = self._or_touching(met, scene.left_out, rows, near)
                 told.append(None if met is None else Approach(*met, first + move))
                 limits[side] = min(limits[side], math.inf if met is None else met[0])
             found.append(MoveClearance(first + move, *told))
@@ -165,8 +168,8 @@ class ClearanceMeter:
             if scene is None:
                 continue
             rows = np.flatnonzero(owners == move)
-            looked = ~_own_pairs(scene) & ~self._left_out(scene, move, q[rows])
-            pairs = np.flatnonzero(looked)
+            scene = self._set_aside(scene, move, q[rows])
+            pairs = np.flatnonzero(~_own_pairs(scene))
             for row in rows.tolist():
                 met = scene.nearest(q[row : row + 1], pairs, within)
                 if met is not None:
@@ -192,10 +195,35 @@ class ClearanceMeter:
                 distance, _, pair = closer
         return distance, scene.pair_names(pair)
 
-    def _left_out(self, scene: CollisionScene, move: int, q: FloatArray) -> NDArray[np.bool_]:
-        if self._handling is None:
-            return np.zeros(len(scene.pairs), dtype=np.bool_)
-        return touching(scene, self._handling, move, q)
+    def _or_touching(
+        self,
+        met: tuple[float, tuple[str, str]] | None,
+        touching: TouchingPairs,
+        q: FloatArray,
+        within: float,
+    ) -> tuple[float, tuple[str, str]] | None:
+        """What is nearest, or pairs that touch at an end of the move where these count."""
+        counted = counted_distances(touching, q, self._cell.clearance)
+        least = float(counted.min())
+        if least >= within or (met is not None and met[0] <= least):
+            return met
+        pair = int(np.unravel_index(int(counted.argmin()), counted.shape)[1])
+        return least, touching.scene.pair_names(pair)
+
+    def _set_aside(self, scene: CollisionScene, move: int, q: FloatArray) -> CollisionScene:
+        """The scene of a move with what touches along it in ``left_out``."""
+        handling = self._handling
+        if handling is None or not (handling.before[move] or handling.behind[move]):
+            return scene
+        return set_aside(scene, handling, move, q[[0, -1]], lambda: self._shrunk(move))
+
+    def _shrunk(self, move: int) -> CollisionScene:
+        """The scene of a move with smaller parts."""
+        assert self._handling is not None
+        tool, parts = self._program.moves[move].tool, self._handling.arrangements[move]
+        if tool not in self._smaller:
+            self._smaller[tool] = CollisionScene(self._cell, tool, parts, RESTING)
+        return self._smaller[tool].rearranged(parts)
 
     def _scene(self, move: int) -> CollisionScene | None:
         """The scene of a move; None where shapes are not known, which is noted once."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..cell.cell import Cell
+from ..handling.arrangement import Arrangement
 from ..handling.handling import Handling
 from ..motion.path.path import Path
 from ..program.tool import Tool
-from .clearance import in_steps
 from .proof.certificate import SceneOf
-from .scene.handled_pairs import touching
+from .scene.handled_pairs import RESTING, set_aside
 from .scene.scene import CollisionScene
 
 
@@ -18,7 +18,8 @@ def handled_scenes(cell: Cell, handling: Handling, path: Path) -> SceneOf:
     """The scenes of a cell with its parts where they are on each move.
 
     On the moves at which a part is taken or released, the pairs that touch there are left out
-    (`flyby.core.collision.scene.handled_pairs`), to be proven from where they are apart.
+    (`flyby.core.collision.scene.handled_pairs`), to be proven clear from where they are apart, and
+    not too deep in each other before.
 
     Args:
         cell: what stands around.
@@ -26,24 +27,27 @@ def handled_scenes(cell: Cell, handling: Handling, path: Path) -> SceneOf:
             them alike.
         path: of the program, all of it.
     """
-    bare: dict[Tool, CollisionScene] = {}
+    bare: dict[tuple[Tool, float], CollisionScene] = {}
     known: dict[tuple[Tool, int], CollisionScene] = {}
     moves = path.sample_moves()
 
+    def rearranged(tool: Tool, parts: Arrangement, smaller: float) -> CollisionScene:
+        if (tool, smaller) not in bare:
+            bare[tool, smaller] = CollisionScene(cell, tool, parts, smaller)
+        return bare[tool, smaller].rearranged(parts)
+
     def scene(tool: Tool, move: int = 0, /) -> CollisionScene:
         parts = handling.arrangements[move]
-        before, behind = (bool(names[move]) for names in (handling.before, handling.behind))
-        handled = before or behind
+        handled = bool(handling.before[move] or handling.behind[move])
         key = tool, move if handled else -1 - _same_before(handling, move)
         if key not in known:
-            if tool not in bare:
-                bare[tool] = CollisionScene(cell, tool, parts)
-            made = bare[tool].rearranged(parts)
+            made = rearranged(tool, parts, 0.0)
             rows = np.flatnonzero(moves == move)
             if handled and rows.size:
-                q = in_steps(path.q[rows], path.states.dq[rows], path.sigma[rows])
-                pairs = touching(made, handling, move, q)
-                made = made.leaving_out(pairs, before=before, behind=behind)
+                ends = path.q[rows[[0, -1]]]
+                made = set_aside(
+                    made, handling, move, ends, lambda: rearranged(tool, parts, RESTING)
+                )
             known[key] = made
         return known[key]
 

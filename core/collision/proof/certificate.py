@@ -23,16 +23,13 @@ from ..scene.scene import CollisionScene, TouchingPairs
 from .enclosure import Enclosure, Span
 from .findings import Budget, FailureCause, UnprovenStretch
 from .subdivision import Prover
+from .touching import SceneFinding, TouchingProof
 from .verdict import CONTACT, MM, Certificate, Met, VerdictReader, nearest_of
 
 TOLERANCE = 1e-5
 """m by which what is proven may stay below the clearance asked for."""
 BUDGET = 2_000_000
 _FINEST = 4e-6
-_SLACK = (1e-3, 4e-3, 0.016)
-"""m beyond what is proven, from which pairs that touched count as apart; the first that does."""
-Finding = tuple[CollisionScene, UnprovenStretch]
-"""What is not proven, and of which bodies."""
 
 
 class SceneOf(Protocol):
@@ -131,23 +128,23 @@ def certify_stretch(
         scene = scenes(run.program.moves[move].tool, move)
         return reader.refused(scene, torn, None, wanted, left.used)
     met: list[Met] = []
-    findings: list[Finding] = []
+    findings: list[SceneFinding] = []
     for provers in proof.provers():
         for prover, pieces in provers:
             finding = prover.prove(spans, pieces, wanted)
             if finding is not None:
-                findings.append((prover.scene, finding))
+                findings.append(SceneFinding(prover.scene, finding, wanted))
         if resolution is not None and not findings:
             for prover, pieces in provers:
                 prover.tighten(spans, pieces, resolution)
         met += [Met(prover.scene, prover.nearest, prover.proven) for prover, _ in provers]
-        if any(finding.cause is FailureCause.NEAR for _, finding in findings):
+        if any(found.stretch.cause is FailureCause.NEAR for found in findings):
             break
     if not findings:
         findings = proof.of_left_out(wanted)
     if findings:
-        scene, finding = min(findings, key=lambda found: _rank(found[1]))
-        return reader.refused(scene, finding, nearest_of(met), wanted, left.used)
+        scene, finding, kept = min(findings, key=lambda found: _rank(found.stretch))
+        return reader.refused(scene, finding, nearest_of(met), kept, left.used)
     near = proof.never_apart(wanted)
     return reader.proven(met, resolution or 0.0, left.used, wanted, near)
 
@@ -185,74 +182,50 @@ class _Proof:
         """Those of one part of the path after the other, with their pieces."""
         for part in parts_of(self.run.path):
             if owned := self._owners(part):
-                yield self._of_part(part, owned)
+                yield self._of_part(part, owned, self.residual)
 
-    def of_left_out(self, wanted: float) -> list[Finding]:
-        """What is wrong with pairs that touch at an end of a move, from where they are apart.
+    def of_left_out(self, wanted: float) -> list[SceneFinding]:
+        """What is wrong with pairs that touch at an end of a move.
 
         Args:
-            wanted: m that they have to keep from there on.
+            wanted: m that they have to keep where they are apart.
         """
         return [
             finding
-            for part in parts_of(self.run.path)
-            for scene, pieces in self._owners(part)
-            if scene.left_out is not None
-            for finding in self._of_touching(scene.left_out, part, pieces, wanted)
+            for part, touching, pieces in self._touching()
+            for finding in self._of_pairs(part, pieces, wanted).findings(touching, pieces)
         ]
 
     def never_apart(self, wanted: float) -> tuple[int, ...]:
-        """Indices of the moves all along which such pairs are near: nothing is proven of them."""
+        """Indices of the moves all along which such pairs are near."""
         path, found = self.run.path, dict[int, None]()
-        for part in parts_of(path):
-            for scene, pieces in self._owners(part):
-                limit = wanted + self.residual + _SLACK[0]
-                if scene.left_out and not self._apart(scene.left_out, pieces[0], limit):
-                    found[path.route.moves[int(path.pieces.segment[pieces[0]])]] = None
+        for part, touching, pieces in self._touching():
+            if self._of_pairs(part, pieces, wanted).never_apart(touching, pieces[0]):
+                found[path.route.moves[int(path.pieces.segment[pieces[0]])]] = None
         return tuple(found)
 
-    def _of_touching(
-        self, touching: TouchingPairs, part: tuple[int, int], pieces: list[int], wanted: float
-    ) -> list[Finding]:
-        """The same of the pairs of one move."""
-        found: list[Finding] = []
-        for slack in _SLACK:
-            apart = self._apart(touching, pieces[0], wanted + self.residual + slack)
-            if not apart:
-                break
-            met = [
-                (prover.scene, prover.prove(apart, pieces, wanted))
-                for prover, _ in self._of_part(part, [(touching.scene, pieces)])
-            ]
-            found = [(scene, finding) for scene, finding in met if finding is not None]
-            # What is near again once it was apart is so, wherever apart is said to begin.
-            if not found or any(finding.cause is FailureCause.NEAR for _, finding in found):
-                break
-        return found
+    def _touching(self) -> Iterator[tuple[tuple[int, int], TouchingPairs, list[int]]]:
+        """Parts of the path with the pairs that touch at the ends of a move, and its pieces."""
+        for part in parts_of(self.run.path):
+            for scene, pieces in self._owners(part):
+                if scene.left_out is not None:
+                    yield part, scene.left_out, pieces
 
-    def _apart(self, touching: TouchingPairs, piece: int, limit: float) -> list[Span]:
-        """The spans on the move that a piece belongs to, less its ends: where bodies touch, until
-        all of them are apart by ``limit`` m for the first time."""
-        path = self.run.path
-        segment = path.pieces.segment
-        rows = np.flatnonzero(segment[path.pieces.sample_pieces] == segment[piece])
-        free = np.flatnonzero(touching.scene.clearance(path.q[rows], limit) >= limit)
-        if not free.size:
-            return []
-        begin = float(path.sigma[rows[free[0] if touching.before else 0]])
-        end = float(path.sigma[rows[free[-1] if touching.behind else -1]])
-        return [
-            (max(first, begin), min(last, end))
-            for first, last in self.spans
-            if first < end and last > begin
-        ]
+    def _of_pairs(self, part: tuple[int, int], pieces: list[int], wanted: float) -> TouchingProof:
+        def provers(scene: CollisionScene, residual: float) -> list[Prover]:
+            return [prover for prover, _ in self._of_part(part, [(scene, pieces)], residual)]
+
+        return TouchingProof(self.run.path, self.spans, provers, self.residual, wanted)
 
     def _of_part(
-        self, part: tuple[int, int], owned: Sequence[tuple[CollisionScene, list[int]]]
+        self,
+        part: tuple[int, int],
+        owned: Sequence[tuple[CollisionScene, list[int]]],
+        residual: float,
     ) -> list[tuple[Prover, list[int]]]:
         first, last = self.run.path.pieces.first_interval[list(part)]
         return [
-            (Prover(self.enclosure, scene, deviations, self.residual, self.left), pieces)
+            (Prover(self.enclosure, scene, deviations, residual, self.left), pieces)
             for deviations in self.deviation.over(int(first), int(last))
             for scene, pieces in owned
         ]

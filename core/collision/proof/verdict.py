@@ -147,11 +147,12 @@ class VerdictReader:
         if any(part.scene.left_out is not None for part in known):
             message += (
                 "; a part, and what takes it or what it rests on, keep "
-                f"{_shown(wanted)} from where they are apart"
+                f"{_shown(wanted)} from where they are apart, and go no deeper into each other "
+                "before than they may"
             )
             if near:
                 moves = ", ".join(str(move + 1) for move in near)
-                message += f"; on move {moves} they never are, and nothing is proven of them"
+                message += f"; on move {moves} they never are apart"
         nearest = nearest_of(known)
         if nearest is None or nearest.nearest.kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.
@@ -180,6 +181,18 @@ class VerdictReader:
         bodies = "" if pair is None else f"{pair[0]} and {pair[1]}"
         distance = 0.0 if finding.distance is None else finding.distance
         match finding.cause:
+            case FailureCause.NEAR if wanted < 0.0:
+                # Of a mesh it is only known that it is too deep.
+                depth = "" if distance > wanted else f" by {-distance * MM:.3f} mm"
+                return (
+                    f"{bodies} overlap{depth}; where a part is taken or released, "
+                    f"{_shown(-wanted)} are allowed"
+                )
+            case FailureCause.DEVIATION | FailureCause.STALLED if wanted < 0.0:
+                return (
+                    f"not proven: {bodies} are as deep in each other as they may be where a part "
+                    f"is taken or released ({_shown(-wanted)}), or nearly so"
+                )
             case FailureCause.NEAR if distance <= 0.0:
                 # Where a mesh is cut there is no depth.
                 depth = f" by {-distance * MM:.3f} mm" if distance < -CONTACT else ""

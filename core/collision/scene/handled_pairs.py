@@ -2,57 +2,154 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Set
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from ...handling.handling import Handling
+from ..distance.solid import TriangleMesh
 from .bodies import BodyKind
-from .scene import CollisionScene
+from .scene import TOUCH, CollisionScene, TouchingPairs
 
 RESTING = 2e-3
 """m by which a part may be off, or in, what it rests on where it is taken or released."""
+APART = 1e-3
+"""m beyond what has to be kept, from which pairs that touched count as apart."""
 
 
-def touching(
-    scene: CollisionScene, handling: Handling, move: int, q: FloatArray
-) -> NDArray[np.bool_]:
-    """Which pairs of a scene may touch on a move, (P,): what is taken there or released.
+def set_aside(
+    scene: CollisionScene,
+    handling: Handling,
+    move: int,
+    ends: FloatArray,
+    shrunk: Callable[[], CollisionScene],
+) -> CollisionScene:
+    """The scene without the pairs that may touch on a move: these are its ``left_out``.
 
     That is the tool and a part that it takes at the move's end or has released at its beginning,
-    and a part that is carried with what it rests on there, as long as it does not go deeper into
-    it.
+    and a part that is carried with what it rests on there. A part goes no deeper than `RESTING`
+    into what it rests on, and a tool no deeper into a part than where it takes or releases it and
+    as much more.
 
     Args:
         scene: with the parts where they are on the move.
         handling: of the program.
         move: index in the program.
-        q: (M, N), along the move.
+        ends: (2, N), where the move begins and ends.
+        shrunk: gives the same scene with parts smaller by `RESTING`.
     """
-    left_out = np.zeros(len(scene.pairs), dtype=np.bool_)
-    before, behind = handling.before[move], handling.behind[move]
-    if not before | behind:
-        return left_out
-    resting: list[tuple[int, int]] = []
-    things = [body.thing in before | behind for body in scene.bodies]
-    for row in np.flatnonzero(np.array(things)[scene.pairs].any(axis=1)).tolist():
+    at_end = handling.before[move], handling.behind[move]
+    rows = _rows_of(scene, at_end[0] | at_end[1])
+    if not len(rows):
+        return scene
+    floor = np.stack(
+        [_floors(scene, rows, names, q) for names, q in zip(at_end, ends, strict=True)], axis=1
+    )
+    chosen = np.isfinite(floor).any(axis=1)
+    rows, floor = rows[chosen], floor[chosen]
+    if not len(rows):
+        return scene
+    pairs = scene.pairs[rows]
+    meshed = np.array(
+        [any(isinstance(scene.bodies[k].solid, TriangleMesh) for k in pair) for pair in pairs]
+    )
+    smaller = shrunk().of_pairs(pairs) if meshed.any() else None
+    which = np.zeros(len(scene.pairs), dtype=np.bool_)
+    which[rows] = True
+    touching = TouchingPairs(scene.of_pairs(pairs), scene, floor, smaller, meshed)
+    return scene.leaving_out(which, touching)
+
+
+def _rows_of(scene: CollisionScene, names: Set[str]) -> IntArray:
+    """Rows of the pairs of parts with these names, and what takes them or what is not carried."""
+    rows: list[int] = []
+    things = np.array([body.thing in names for body in scene.bodies])
+    for row in np.flatnonzero(things[scene.pairs].any(axis=1)).tolist():
         first, second = (scene.bodies[k] for k in scene.pairs[row])
+        gripped = first.kind is BodyKind.TOOL and second.kind is BodyKind.PART and first.own
+        held = any(b.kind is BodyKind.HELD and b.thing in names for b in (first, second))
+        if gripped or (held and first.own != second.own):
+            rows.append(row)
+    return np.array(rows, dtype=np.int64)
+
+
+def _floors(scene: CollisionScene, rows: IntArray, names: Set[str], q: FloatArray) -> FloatArray:
+    """See ``floor`` of `TouchingPairs`, of one end of the move."""
+    distance, _ = scene.chosen_distances(q[None], (np.zeros_like(rows), rows), RESTING)
+    floor = np.full(len(rows), math.inf)
+    deepest: dict[tuple[str, str], float] = {}
+    bodies = [[scene.bodies[k] for k in scene.pairs[row]] for row in rows]
+    for (first, second), d in zip(bodies, distance.tolist(), strict=True):
+        deepest[first.thing, second.thing] = min(deepest.get((first.thing, second.thing), 0.0), d)
+    for k, (first, second) in enumerate(bodies):
         if first.kind is BodyKind.TOOL and second.kind is BodyKind.PART:
-            left_out[row] = first.own
-        elif first.own != second.own:
-            thing = next((b.thing for b in (first, second) if b.kind is BodyKind.HELD), "")
-            resting += [(0, row)] if thing in before else []
-            resting += [(len(q) - 1, row)] if thing in behind else []
-    for row in _at_rest(scene, q, resting):
-        deepest = scene.nearest(q, np.array([row]), 0.0)
-        left_out[row] = deepest is None or deepest[0] >= -RESTING
-    return left_out
+            if second.thing in names:
+                floor[k] = deepest[first.thing, second.thing] - RESTING
+        elif distance[k] < RESTING:
+            held = first if first.kind is BodyKind.HELD else second
+            floor[k] = -RESTING if held.thing in names else math.inf
+    return floor
 
 
-def _at_rest(scene: CollisionScene, q: FloatArray, asked: list[tuple[int, int]]) -> list[int]:
-    """Rows of pairs that all but touch at one of the samples (K,) that each is asked at."""
-    if not asked:
-        return []
-    samples, rows = np.array(sorted(asked)).T
-    distance, _ = scene.chosen_distances(q, (samples, rows), RESTING)
-    return sorted(set(rows[distance < RESTING].tolist()))
+class ApartRows(NamedTuple):
+    """Which of M samples along a move K pairs are apart at, from the first to the last.
+
+    Args:
+        first, last: (K,); a pair that never comes apart has its first behind its last.
+    """
+
+    first: IntArray
+    last: IntArray
+
+    @property
+    def never(self) -> NDArray[np.bool_]:
+        """Which pairs are apart at no sample, (K,)."""
+        return self.first > self.last
+
+
+def apart_rows(distance: FloatArray, limit: float, floor: FloatArray) -> ApartRows:
+    """Where pairs that touch at an end of a move are apart.
+
+    Args:
+        distance: (M, K) m, along the move.
+        limit: m, from which on they count as apart.
+        floor: see `TouchingPairs`.
+    """
+    apart = distance >= limit
+    some = apart.any(axis=0)
+    count = len(distance)
+    first = np.where(np.isfinite(floor[:, 0]), apart.argmax(axis=0), 0)
+    last = np.where(np.isfinite(floor[:, 1]), count - 1 - apart[::-1].argmax(axis=0), count - 1)
+    return ApartRows(np.where(some, first, count), np.where(some, last, -1))
+
+
+def counted_distances(touching: TouchingPairs, q: FloatArray, clearance: float) -> FloatArray:
+    """Signed distances (M, K) m at samples along a move, as far as they count; infinite elsewhere.
+
+    They do where pairs that were apart do not keep the clearance, and where they are deeper in each
+    other than they may be.
+
+    Args:
+        touching: pairs that may touch at an end of the move.
+        q: (M, N), along all of it.
+        clearance: m, kept where they are apart.
+    """
+    distance = touching.scene.distances(q, clearance + APART).distance
+    floor = touching.floor
+    apart = apart_rows(distance, clearance + APART, floor)
+    row = np.arange(len(q))[:, None]
+    before, behind = row < apart.first, row > apart.last
+    least = np.minimum(
+        np.where(before, floor[:, 0], math.inf), np.where(behind, floor[:, 1], math.inf)
+    )
+    deep = distance < least
+    if touching.shrunk is not None:
+        deep[:, touching.meshed] = (
+            touching.shrunk.distances(q, 1.0).distance[:, touching.meshed] <= 0.0
+        )
+    near = distance < max(clearance, TOUCH)
+    return np.where(np.where(before | behind, deep, near), distance, math.inf)

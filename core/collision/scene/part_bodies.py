@@ -13,6 +13,7 @@ from ...door import called
 from ...errors import InputError, Note
 from ...handling.arrangement import Arrangement
 from ...robot.model import Robot
+from ..distance.shrinking import shrink
 from ..distance.solid import Solid
 from .allowed_pairs import exclusion_reason
 from .bodies import Body, BodyKind, pieces_of, tool_like_solids
@@ -36,8 +37,14 @@ def refuse_parts(cell: Cell) -> None:
         )
 
 
-def part_solids(parts: Iterable[Workpiece]) -> tuple[dict[str, list[Solid]], list[Note]]:
+def part_solids(
+    parts: Iterable[Workpiece], smaller: float = 0.0
+) -> tuple[dict[str, list[Solid]], list[Note]]:
     """The solids of each kind of part, convex as a tool's, and what is odd about them.
+
+    Args:
+        parts: of the cell.
+        smaller: m by which they are to be smaller all round, see `shrink`.
 
     Raises:
         InputError: a mesh cannot be used.
@@ -45,7 +52,8 @@ def part_solids(parts: Iterable[Workpiece]) -> tuple[dict[str, list[Solid]], lis
     solids: dict[str, list[Solid]] = {}
     notes: list[Note] = []
     for part in parts:
-        solids[part.name], odd = tool_like_solids(part.name, part.geometry)
+        whole, odd = tool_like_solids(part.name, part.geometry)
+        solids[part.name] = [shrink(solid, smaller) for solid in whole] if smaller else whole
         notes += odd
     return solids, notes
 

@@ -43,18 +43,22 @@ CHUNK = 256
 
 
 class TouchingPairs(NamedTuple):
-    """Pairs of bodies that touch at an end of a move.
+    """K pairs of bodies that may touch at an end of a move.
 
     Args:
         scene: of these pairs alone.
         whole: of all pairs, these among them.
-        before, behind: whether they may touch where the move begins, and where it ends.
+        floor: (K, 2) m, signed distance that they keep at least where they touch, next to the
+            move's beginning and to its end; infinite where they may not touch.
+        shrunk: of these pairs alone, with smaller parts; None if it is not needed.
+        meshed: (K,), which of them have a depth in ``shrunk`` alone, where they keep off.
     """
 
     scene: CollisionScene
     whole: CollisionScene
-    before: bool
-    behind: bool
+    floor: FloatArray
+    shrunk: CollisionScene | None
+    meshed: NDArray[np.bool_]
 
 
 class CollisionScene:
@@ -64,6 +68,7 @@ class CollisionScene:
         cell: robot, tools, obstacles.
         tool: the mounted tool; its shape is the one that the cell has for its name.
         parts: where the cell's parts are, all of them; None for a cell without.
+        smaller: m by which parts are smaller all round than the cell has them.
 
     Attributes:
         bodies: every solid, and what carries it.
@@ -79,7 +84,13 @@ class CollisionScene:
             used, or the cell has parts and nobody says where they are.
     """
 
-    def __init__(self, cell: Cell, tool: Tool = FLANGE, parts: Arrangement | None = None) -> None:
+    def __init__(
+        self,
+        cell: Cell,
+        tool: Tool = FLANGE,
+        parts: Arrangement | None = None,
+        smaller: float = 0.0,
+    ) -> None:
         if parts is None:
             refuse_parts(cell)
         found = bodies_of(cell, tool)
@@ -88,7 +99,7 @@ class CollisionScene:
         self.robot: Robot = cell.robot
         self.frames: FrameTree = frame_tree(cell.robot)
         self._standing = found.bodies
-        self._part_solids, odd = part_solids(cell.parts)
+        self._part_solids, odd = part_solids(cell.parts, smaller)
         self._set_bodies(parts or ())
         solids = [body.solid for body in self.bodies]
         nesting = Nesting(solids)
@@ -125,25 +136,24 @@ class CollisionScene:
         other._set_pairs(parts)
         return other
 
-    def leaving_out(
-        self, pairs: NDArray[np.bool_], *, before: bool, behind: bool
-    ) -> CollisionScene:
-        """The same scene without some of its pairs, which are in ``left_out`` of what is made.
+    def leaving_out(self, which: NDArray[np.bool_], touching: TouchingPairs) -> CollisionScene:
+        """The same scene without some of its pairs.
 
         Args:
-            pairs: (P,), of `pairs`.
-            before, behind: whether they may touch where the move begins, and where it ends.
+            which: (P,), of `pairs`.
+            touching: of these, for ``left_out`` of what is made.
         """
-        other = self._of_pairs(~pairs)
-        if pairs.any():
-            other.left_out = TouchingPairs(self._of_pairs(pairs), self, before, behind)
+        other = self.of_pairs(self.pairs[~which])
+        other.left_out = touching
         return other
 
-    def _of_pairs(self, which: NDArray[np.bool_]) -> CollisionScene:
+    def of_pairs(self, pairs: NDArray[np.int64]) -> CollisionScene:
+        """The same scene with other pairs (P, 2) of its bodies."""
         other = copy(self)
         other._recent = RecentDistances()
-        other.pairs = self.pairs[which]
-        other._pairs = [(int(a), int(b)) for a, b in other.pairs]
+        other.pairs = pairs
+        other._pairs = [(int(a), int(b)) for a, b in pairs]
+        other.left_out = None
         return other
 
     def _set_bodies(self, parts: Arrangement) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -24,6 +26,7 @@ from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.shape import Box, Cylinder
 from flyby.core.spatial.pose import Pose
+from flyby.validation.scenes.solids import plate
 
 UR = find_robot("ur/ur10e")
 CONTROLLER = Controller(find_vendor("ur"), UR)
@@ -139,9 +142,47 @@ def test_what_was_apart_is_not_let_near_again(via) -> None:
 
 
 def test_what_never_comes_apart_is_said() -> None:
-    """Slid along the floor: of the crate and the floor nothing is proven, and of which move."""
+    """Slid along the floor."""
     slid = Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, to(0.6, -0.2, 0.1), OFF))
     made = proof(slid, cell_with(FLOOR))
     assert made.proven
-    assert "on move 3 they never are, and nothing is proven of them" in made.message
+    assert "on move 3 they never are apart" in made.message
     assert "never are" not in proof(trip(), cell_with(FLOOR)).message
+
+
+def test_a_tool_goes_no_deeper_into_a_part_than_where_it_takes_it() -> None:
+    """Along an arc that dives through the crate's side before the grip at its top."""
+    over, grip = to(0.6, 0.05, 0.102), place(0.6, 0.2, 0.088)
+    dive = MoveC(grip, SLOW, FINE, tool=GRIP, via=place(0.6, 0.13, 0.07))
+    lift = to(0.6, 0.2, 0.3)
+    made = proof(Program((over, dive, ON, lift)), cell_with(FLOOR))
+    assert made.verdict is Verdict.VIOLATED and made.move == 1
+    assert set(made.pair or ()) == {"crate", "grip"} and "are allowed" in made.message
+    straight = Program((to(0.6, 0.2, 0.2), to(0.6, 0.2, 0.088), ON, lift))
+    assert proof(straight, cell_with(FLOOR)).proven
+    for program, clear in ((straight, True), (Program((over, dive, ON, lift)), False)):
+        meter = ClearanceMeter(cell_with(FLOOR), program, handling_of(program, cell_with(FLOOR)))
+        met = nearest_of(meter.over(CONTROLLER.run(program).path, 0))[0]
+        assert met is not None and met.overlaps is not clear
+
+
+def test_depth_into_a_mesh_is_judged_by_a_smaller_part() -> None:
+    """A board with a rim is no convex shape, and nobody knows how deep a crate is in it."""
+    board = plate(lambda x, y: 0.05 * (y > 0.4) + 0.0 * x, (0.4, -0.5), (1.0, 0.5), 0.05, 0.1)
+    around = cell_with(Obstacle("board", Geometry(board)))
+    assert proof(trip(), around).proven
+    assert proof(trip(put=0.0985), around).proven
+    made = proof(trip(put=0.097), around)
+    assert made.verdict is Verdict.VIOLATED and set(made.pair or ()) == {"board", "crate"}
+    assert "2.000 mm are allowed" in made.message
+
+
+def test_what_comes_apart_later_does_not_hide_what_is_apart() -> None:
+    """Of two crates side by side one is taken: they slide along each other, off the floor."""
+    two = (replace(CRATES[0], count=(1, 2, 1), pitch=(0.0, 0.1005, 0.0)),)
+    dip = MoveC(place(0.6, 0.2, 0.2), SLOW, FINE, tool=GRIP, via=place(0.6, 0.205, 0.15))
+    made = proof(
+        Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, dip)), cell_with(FLOOR, parts=two)
+    )
+    assert made.verdict is Verdict.VIOLATED
+    assert set(made.pair or ()) == {"crate 1", "crate 2"}

@@ -1,0 +1,160 @@
+"""What is proven of pairs that touch at an end of a move: clear where apart, else not too deep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ...arrays import BoolArray, FloatArray, IntArray
+from ...motion.path.path import Path
+from ..scene.handled_pairs import APART, ApartRows, apart_rows
+from ..scene.scene import CollisionScene, TouchingPairs
+from .enclosure import Span
+from .findings import FailureCause, UnprovenStretch
+from .subdivision import Prover
+from .verdict import CONTACT
+
+_SLACKS = (APART, 4.0 * APART, 16.0 * APART)
+"""m beyond what is proven, from which pairs count as apart; the first at which they are clear."""
+
+
+class SceneFinding(NamedTuple):
+    """What is not proven.
+
+    Args:
+        scene: the bodies.
+        stretch: where.
+        wanted: m that was to be kept there; negative is how deep bodies may be in each other.
+    """
+
+    scene: CollisionScene
+    stretch: UnprovenStretch
+    wanted: float
+
+
+@dataclass(frozen=True)
+class TouchingProof:
+    """Proves pairs that touch at an end of one move.
+
+    Args:
+        path: the move is on.
+        spans: of the path, that are to be proven.
+        provers: make those of a scene, with a residual.
+        residual: m.
+        wanted: m that bodies keep where they are apart.
+    """
+
+    path: Path
+    spans: Sequence[Span]
+    provers: Callable[[CollisionScene, float], list[Prover]]
+    residual: float
+    wanted: float
+
+    def findings(self, touching: TouchingPairs, pieces: Sequence[int]) -> list[SceneFinding]:
+        """What is not proven of them.
+
+        Args:
+            touching: the pairs.
+            pieces: of the move.
+        """
+        rows, distance = self._sampled(touching, pieces[0])
+        found: list[SceneFinding] = []
+        left = np.arange(len(touching.floor))
+        for slack in _SLACKS:
+            limit = self.wanted + self.residual + slack
+            apart = apart_rows(distance[:, left], limit, touching.floor[left])
+            again = np.zeros(len(left), dtype=np.bool_)
+            for first, last, which in _alike(apart):
+                span = float(self.path.sigma[rows[first]]), float(self.path.sigma[rows[last]])
+                scene = touching.scene.of_pairs(touching.scene.pairs[left[which]])
+                met = self._prove(scene, self.residual, [span], pieces, self.wanted)
+                # What is near again once it was apart is so, wherever apart is said to begin.
+                again[which] = bool(met) and slack < _SLACKS[-1] and not _near(met)
+                if not again[which].any():
+                    found += met
+            done = ~again
+            found += self._too_deep(touching, left[done], _of(apart, done), rows, pieces)
+            left = left[again]
+        return found
+
+    def never_apart(self, touching: TouchingPairs, piece: int) -> bool:
+        """Whether a pair is apart nowhere on the move that a piece belongs to."""
+        _, distance = self._sampled(touching, piece)
+        limit = self.wanted + self.residual + APART
+        return bool(apart_rows(distance, limit, touching.floor).never.any())
+
+    def _sampled(self, touching: TouchingPairs, piece: int) -> tuple[IntArray, FloatArray]:
+        """Rows of the path that are of one move, and the pairs' distances (M, K) there."""
+        segment = self.path.pieces.segment
+        rows = np.flatnonzero(segment[self.path.pieces.sample_pieces] == segment[piece])
+        within = self.wanted + self.residual + _SLACKS[-1]
+        return rows, touching.scene.distances(self.path.q[rows], within).distance
+
+    def _too_deep(
+        self,
+        touching: TouchingPairs,
+        left: IntArray,
+        apart: ApartRows,
+        rows: IntArray,
+        pieces: Sequence[int],
+    ) -> list[SceneFinding]:
+        """Where pairs go deeper into each other than they may, before they are apart and behind.
+
+        What the model's residual does there is left out: it is the emulated motion that touches.
+        """
+        sigma = self.path.sigma[rows]
+        asked: dict[tuple[float, float, float, bool], list[int]] = {}
+        for row, first, last in zip(left.tolist(), *apart, strict=True):
+            floor = touching.floor[row].tolist()
+            ends = [(0, first, floor[0]), (last, len(rows) - 1, floor[1])]
+            if first > last:
+                ends = [(0, len(rows) - 1, min(floor))]
+            for begin, end, least in ends:
+                if math.isfinite(least) and begin < end:
+                    key = float(sigma[begin]), float(sigma[end]), least, bool(touching.meshed[row])
+                    asked.setdefault(key, []).append(row)
+        found: list[SceneFinding] = []
+        for (begin, end, least, meshed), which in asked.items():
+            scene = touching.scene if touching.shrunk is None or not meshed else touching.shrunk
+            alone, kept = scene.of_pairs(scene.pairs[which]), CONTACT if meshed else least
+            met = self._prove(alone, 0.0, [(begin, end)], pieces, kept)
+            found += [finding._replace(wanted=least) for finding in met]
+        return found
+
+    def _prove(
+        self,
+        scene: CollisionScene,
+        residual: float,
+        stretches: Sequence[Span],
+        pieces: Sequence[int],
+        wanted: float,
+    ) -> list[SceneFinding]:
+        asked = [
+            (max(first, begin), min(last, end))
+            for first, last in self.spans
+            for begin, end in stretches
+            if first < end and last > begin
+        ]
+        if not asked:
+            return []
+        met = [prover.prove(asked, pieces, wanted) for prover in self.provers(scene, residual)]
+        return [SceneFinding(scene, stretch, wanted) for stretch in met if stretch is not None]
+
+
+def _alike(apart: ApartRows) -> Iterator[tuple[int, int, BoolArray]]:
+    """First and last sample, and the pairs that are apart from there to there."""
+    both = np.stack(apart, axis=1)
+    for first, last in np.unique(both[~apart.never], axis=0).tolist():
+        yield first, last, (both == (first, last)).all(axis=1)
+
+
+def _of(apart: ApartRows, which: BoolArray) -> ApartRows:
+    return ApartRows(apart.first[which], apart.last[which])
+
+
+def _near(met: Sequence[SceneFinding]) -> bool:
+    return any(finding.stretch.cause is FailureCause.NEAR for finding in met)
