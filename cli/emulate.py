@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -102,12 +102,10 @@ def emulate(
     inputs = [program, *source.inputs()]
     check_outputs(outputs, inputs, replace_existing=force)
     given = [option for option, path in outputs.items() if path is not None]
-    if json:
-        given.append("--json")
     if source.entry == ALL:
         if given:
             raise OptionError(f"{given[0]} is of one program: name one entry, not all")
-        _each(program, source, options)
+        _each(program, source, options, as_json=json)
         return
     with progress("reading the program") as say:
         read = _begun(program, source, each=not given)
@@ -115,12 +113,14 @@ def emulate(
             run = _driven(read, replace(options, report=say))
             say("writing results")
     if isinstance(read, str):
-        _each(program, source, options, read)
+        _each(program, source, options, as_json=json, why=read)
         return
     with progress("writing results"):
         made = _write_files(files, run, inputs, opaque, force)
-    _tell(run, as_json=json)
-    if not json:
+    if json:
+        print_json(_json(run))
+    else:
+        _tell(run)
         for path in made:
             print_rich(f"wrote {path}")
     if run.faults:
@@ -156,7 +156,9 @@ def _driven(read: Program, options: EmulateOptions) -> Run:
         raise
 
 
-def _each(program: Path, source: SourceOptions, options: EmulateOptions, why: str = "") -> None:
+def _each(
+    program: Path, source: SourceOptions, options: EmulateOptions, *, as_json: bool, why: str = ""
+) -> None:
     """Drive every routine that a program may begin with, and report each.
 
     Args:
@@ -170,10 +172,16 @@ def _each(program: Path, source: SourceOptions, options: EmulateOptions, why: st
     if why:
         warn(f"{why}: each routine that moves the robot is driven by itself; --entry names one")
     failed = all(entry.parameters for entry in moving)
+    told: list[dict[str, Any]] = []
     for entry in moving:
-        print_rich(f"\n{entry}")
+        call = f"{entry.name}({', '.join(entry.parameters)})" if entry.parameters else entry.name
+        said: dict[str, Any] = {"entry": call, "moves": entry.moves}
+        told.append(said)
+        if not as_json:
+            print_rich(f"\n{entry}")
         if entry.parameters:
-            print_rich(f"takes arguments: --entry '{entry.name}({', '.join(entry.parameters)})'")
+            if not as_json:
+                print_rich(f"takes arguments: --entry '{call}'")
             continue
         try:
             with progress(f"driving {entry.name}") as say:
@@ -181,10 +189,15 @@ def _each(program: Path, source: SourceOptions, options: EmulateOptions, why: st
                 run = _driven(read, replace(options, report=say))
         except FlybyError as error:
             fail(str(error))
-            failed = True
+            failed, said["error"] = True, str(error)
         else:
-            _tell(run, as_json=False)
             failed = failed or bool(run.faults)
+            if as_json:
+                said["run"] = _json(run)
+            else:
+                _tell(run)
+    if as_json:
+        print_json({"routines": told})
     if failed:
         raise typer.Exit(1)
 
@@ -231,14 +244,18 @@ def _sources(path: Path, run: Run, opaque: OpaqueStyle | None) -> dict[Path, byt
     return sources_by_path(program, setup, path, chosen, folder=path.is_dir(), option="--write")
 
 
-def _tell(run: Run, *, as_json: bool) -> None:
-    from .output.report_text import print_notes, print_report, run_json
+def _tell(run: Run) -> None:
+    from .output.report_text import print_report
 
-    if not as_json:
-        print_report(run)
-        return
-    print_json(run_json(run))
+    print_report(run)
+
+
+def _json(run: Run) -> dict[str, Any]:
+    """All that is said of a run, but what goes to the error stream, which is said."""
+    from .output.report_text import print_notes, run_json
+
     print_notes(run.report)
+    return run_json(run)
 
 
 @with_options

@@ -125,7 +125,7 @@ def _same_kind(old: Move, new: Move) -> bool:
 
 def move_key(move: Move) -> tuple[str, ...]:
     """What a move is known again by: its kind and its point."""
-    kind = type(move).__name__
+    kind = move.kind
     target = move.target
     if target.name is not None:
         return kind, target.name.casefold()
@@ -141,7 +141,7 @@ def move_text(move: Move) -> str:
     """A move in a line: kind, point, speed, zone, tool, frame."""
     where = move.target.name or ("nobody knows where" if move.open else target_text(move.target))
     return (
-        f"{type(move).__name__} {where}, {speed_shown(move.speed)}, {zone_shown(move.zone)}, "
+        f"{move.kind} {where}, {speed_shown(move.speed)}, {zone_shown(move.zone)}, "
         f"{move.tool.name}, {move.work_object.name}"
     )
 

@@ -50,9 +50,12 @@ class _Motion:
         span = None if self.origin is None else self.origin.statement
         line = "" if span is None else f", line {span.line}"
         told = (speed_shown(self.speed), zone_shown(self.zone), self.tool.name)
-        return in_line(
-            f"{type(self).__name__} {self._way}, {', '.join(told)}, {self.work_object.name}{line}"
-        )
+        return in_line(f"{self.kind} {self._way}, {', '.join(told)}, {self.work_object.name}{line}")
+
+    @property
+    def kind(self) -> str:
+        """``MoveJ``, ``MoveL`` or ``MoveC``; ``move`` where nobody knows where it goes."""
+        return "move" if self.open else type(self).__name__
 
     @property
     def _way(self) -> str:

@@ -165,4 +165,4 @@ def _cells(move: Move) -> tuple[str, ...]:
         at = ", ".join(f"{1e3 * value:.1f}" for value in target.pose.position) + " mm"
     fast = speed.name or ("" if speed.tcp is None else f"{1e3 * speed.tcp:.4g} mm/s")
     line = "" if move.origin is None else str(move.origin.statement.line)
-    return type(move).__name__, at, fast, zone_shown(move.zone), move.tool.name, line
+    return move.kind, at, fast, zone_shown(move.zone), move.tool.name, line

@@ -165,7 +165,7 @@ def _spent(run: Run, index: int) -> float | None:
 
 
 def _named(move: Move) -> str:
-    return move.target.name or type(move).__name__
+    return move.target.name or move.kind
 
 
 def _zones(was: Move | None, move: Move) -> str:

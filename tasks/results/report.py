@@ -287,7 +287,7 @@ def _empty(index: int, move: Move, fault: Fault | None = None) -> MoveReport:
     """A move that is not driven."""
     return MoveReport(
         number=index + 1,
-        kind=type(move).__name__,
+        kind=move.kind,
         target=move.target.name,
         position=_position(move),
         span=move.statement,
@@ -342,7 +342,9 @@ def _zone(move: Move, reach: tuple[float, float]) -> ZoneReport:
 
 
 def _position(move: Move) -> tuple[float, float, float] | None:
-    return None if isinstance(move.target, JointTarget) else move.target.pose.position
+    if move.open or isinstance(move.target, JointTarget):
+        return None
+    return move.target.pose.position
 
 
 def seconds(rest: float) -> str:

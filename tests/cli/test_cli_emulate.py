@@ -282,8 +282,32 @@ def test_a_file_without_a_beginning_is_driven_routine_by_routine(
     ]
     assert "there is no PROC main: each routine that moves the robot is driven" in result.stderr
     result = flyby("emulate", path, "--robot", ROBOT, "--json")
+    assert result.exit_code == 0
+    routines = json.loads(result.stdout)["routines"]
+    assert [(one["entry"], one["moves"]) for one in routines] == [("a", 2), ("b", 2)]
+    assert 0.0 < routines[0]["run"]["cycle_time_s"] < routines[1]["run"]["cycle_time_s"]
+    result = flyby("emulate", path, "--robot", ROBOT, "--csv", tmp_path / "a.csv")
     assert result.exit_code == 1
     assert "choose as the entry one of a (2 moves), b (2 moves), c (no moves)" in result.stderr
+
+
+def test_routines_with_faults_and_arguments_are_listed_in_json(
+    flyby: Flyby, tmp_path: Path
+) -> None:
+    path = two_routines(tmp_path, f"{TURN % 0}\nMoveL pGone,v100,fine,tool0;\n{TURN % 10}")
+    path.write_text(path.read_text().replace("ENDMODULE", NEEDY), "utf-8")
+    result = flyby("emulate", path, "--robot", ROBOT, "--entry", "all", "--json")
+    assert result.exit_code == 1
+    faulty, needy = json.loads(result.stdout)["routines"]
+    lost = faulty["run"]["moves"][1]
+    assert (lost["kind"], lost["position_m"], lost["driven"]) == ("move", None, False)
+    assert needy == {"entry": "needy(x)", "moves": 1}
+
+
+NEEDY = """PROC needy(num x)
+  MoveAbsJ [[x,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;
+ENDPROC
+ENDMODULE"""
 
 
 def test_what_moves_nothing_is_refused_as_such(flyby: Flyby, tmp_path: Path) -> None:

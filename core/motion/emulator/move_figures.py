@@ -92,7 +92,7 @@ def range_of(run: Run) -> TaughtRange:
     known = [load.mass for load in loads_of(run.program, run.path) if load is not None]
     q = run.trajectory.q
     return TaughtRange(
-        tuple(sorted({type(move).__name__ for move in moves})),
+        tuple(sorted({move.kind for move in moves})),
         len(driven) < len(moves) - 1,
         (min([*slowest, float(tops.max())]), float(tops.max())),
         (min(driven), max(driven)) if driven else None,
