@@ -161,9 +161,51 @@ def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
         else:
             t = even_times(motion.t[0], motion.t[-1] + window, step)
         q, dq = (np.empty((len(t), motion.q.shape[1])) for _ in range(2))
-        _average(motion.t, motion.q, motion.dq, motion.areas, window, t, q, dq, _NOT_WANTED)
+        if motion.step == step:
+            _average_evenly(motion, window, t, q, dq)
+        else:
+            _average(motion.t, motion.q, motion.dq, motion.areas, window, t, q, dq, _NOT_WANTED)
         motion.means[window, step] = JointMotion(t, q, dq, step)
     return motion.means[window, step]
+
+
+def _average_evenly(
+    motion: JointMotion, window: float, t: FloatArray, q: FloatArray, dq: FloatArray
+) -> None:
+    """Write the mean over a window at the knots of a motion, which are even, and some behind them.
+
+    There the window begins at the same place of an interval each time: what weighs knots is worked
+    out once.
+    """
+    count, back = len(motion.t), int(np.ceil(window / motion.step - _SLACK))
+    # Between these the whole window lies in the motion.
+    first, last = min(back, len(t)), min(count, len(t))
+    for part in (slice(0, first), slice(max(first, last), len(t))):
+        given = motion.t, motion.q, motion.dq, motion.areas, window, t[part]
+        _average(*given, q[part], dq[part], _NOT_WANTED)
+    if last <= first:
+        return
+    since = back * motion.step - window
+    then = _cubic(np.array([0.0, motion.step]), 0, since)
+    rate = 1.0 / window
+    now, begin, end = (slice(a, last - first + a) for a in (first, 0, 1))
+    positions, slopes, areas = motion.q, motion.dq, motion.areas
+    q[now] = (1.0 + rate * since) * positions[0]
+    flat = (
+        array.reshape(-1)
+        for array in (
+            positions[now],
+            positions[begin],
+            positions[end],
+            slopes[begin],
+            slopes[end],
+            areas[now],
+            areas[begin],
+            q[now],
+            dq[now],
+        )
+    )
+    _fill_means(rate, *then[2:5], *then[8:], *flat)
 
 
 def even_times(begin: float, end: float, step: float) -> FloatArray:
@@ -330,3 +372,32 @@ def _average(
             for j in range(q.shape[1]):
                 change = _velocity(a, q, dq, j) - _velocity(b, q, dq, j)
                 acceleration[i, j] = rate * change
+
+
+@lean
+def _fill_means(
+    rate: float,
+    rise: float,
+    v0: float,
+    v1: float,
+    since: float,
+    way: float,
+    b0: float,
+    b1: float,
+    now: FloatArray,
+    begin: FloatArray,
+    end: FloatArray,
+    begin_slope: FloatArray,
+    end_slope: FloatArray,
+    area: FloatArray,
+    begin_area: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
+) -> None:
+    """All joints of all knots in one row; positions are added to. See `_Cubic` for the weights."""
+    for n in range(velocity.size):
+        step = rise * (end[n] - begin[n]) + v0 * begin_slope[n] + v1 * end_slope[n]
+        velocity[n] = rate * (now[n] - begin[n] - step)
+    for n in range(position.size):
+        step = way * (end[n] - begin[n]) + b0 * begin_slope[n] + b1 * end_slope[n]
+        position[n] += rate * (area[n] - begin_area[n] - since * begin[n] - step)

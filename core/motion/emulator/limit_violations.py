@@ -17,6 +17,12 @@ from ..geometry.quintic import basis, bends, slopes
 from ..model.torque import Torque
 from ..path.between_states import step_of
 from ..path.tcp_samples import States
+from ..timing.control_points import (
+    most_acceleration,
+    most_speed,
+    most_tool_speed,
+    slope_points,
+)
 from ..timing.limits import SegmentLimits
 from ..timing.timed_zones import ROOM
 from ..timing.timing import Timing
@@ -24,6 +30,8 @@ from ..timing.torque import shares_taken
 
 _EXCESS = 1.004
 """Share of a limit from which on it is reported: between the places looked at, 1.005 at most."""
+_EXCESS_NEARLY = 1.002
+"""The same for the tool, where the cubic is looked at that its twist is near."""
 _CLOSE = 0.8
 """Share below which peaks between the places looked at are none that pass a limit."""
 _BENT = 0.416
@@ -221,6 +229,8 @@ def _fill_shares(
         k = intervals[n]
         s, own = left[k], (spacing[k], x[k], x[k + 1])
         limits = velocity[owner[k]], acceleration[owner[k]]
+        if _keeps(states, s, *own, *limits):
+            continue
         for m in range(at_few.size):
             z = at_few[m]
             _look(states, s, *own, z, weights_few[m], *limits, state, few[:, m])
@@ -236,6 +246,30 @@ def _fill_shares(
             peak = _peak(many, j)
             if peak > most[k]:
                 most[k], row[k] = peak, j
+
+
+@inner
+def _keeps(
+    states: States,
+    s: int,
+    h: float,
+    x0: float,
+    x1: float,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+) -> bool:
+    """Whether no limit can be passed in an interval."""
+    axes = states.q.shape[1]
+    keeps = True
+    for j in range(axes):
+        c = slope_points(states, s, j, step_of(states, s, j, h), h)
+        # What is not a number keeps to nothing.
+        keeps = keeps and most_speed(c, x0, x1) <= (_EXCESS * velocity[j]) ** 2
+        keeps = keeps and most_acceleration(c, x0, x1, h) <= _EXCESS * acceleration[j]
+    for part in range(2):
+        most = most_tool_speed(states, s, part, h, x0, x1)
+        keeps = keeps and most <= (_EXCESS_NEARLY * velocity[axes + part]) ** 2
+    return keeps
 
 
 @inner

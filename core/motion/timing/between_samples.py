@@ -19,6 +19,7 @@ from ...robot.kinematics.lean import inner, lean
 from ..geometry.pieces import PieceIndices
 from ..geometry.quintic import slopes
 from ..path.tcp_samples import States
+from .control_points import most_speed, most_tool_speed, slope_points
 from .rates import bind, pull_rates, rates
 
 BETWEEN = 1 << 20
@@ -56,6 +57,21 @@ def _least(rate: FloatArray, velocity: FloatArray) -> tuple[float, int]:
         if share > most:
             most, row = share, j
     return (1.0 / (most * most) if row >= 0 else np.inf), row
+
+
+@inner
+def _keeps(states: States, s: int, h: float, velocity: FloatArray, x0: float, x1: float) -> bool:
+    """Whether, with x linear between two values, no limit can be passed after sample s."""
+    axes = velocity.size - 2
+    keeps = True
+    for j in range(axes):
+        c = slope_points(states, s, j, states.q[s + 1, j] - states.q[s, j], h)
+        # What is not a number keeps to nothing.
+        keeps = keeps and most_speed(c, x0, x1) <= _ROOM * velocity[j] ** 2
+    for part in range(2):
+        most = most_tool_speed(states, s, part, h, x0, x1)
+        keeps = keeps and most <= _ROOM * velocity[axes + part] ** 2
+    return keeps
 
 
 @inner
@@ -128,7 +144,8 @@ def _lower_between(
             end[1], _ = _least(rate, own)
             for e in range(2):
                 lowered[e] = 0.0 if ceiling[i + e] == 0.0 else end[e]
-            for m in range(_PLACES.size):
+            looked = 0 if _keeps(states, s, spacing[i], own, lowered[0], lowered[1]) else 1
+            for m in range(looked * _PLACES.size):
                 z = _PLACES[m]
                 _inside(states, s, spacing[i], m, rate, twist)
                 x, row = _least(rate, own)
