@@ -42,26 +42,32 @@ def refusal(faults: Sequence[Fault]) -> MotionError:
     """The error of a program with faults, where it can only be used as a whole.
 
     Args:
-        faults: at least one; a line in a loop is named once.
+        faults: at least one; a line in a loop is named once, with its first.
     """
-    lines = list({fault.span or fault.move: fault for fault in faults}.values())
-    first, rest = lines[0], lines[1:]
+    lines: dict[Span | int, list[Fault]] = {}
+    for fault in faults:
+        lines.setdefault(fault.span or fault.move, []).append(fault)
+    (first, *again), *others = lines.values()
+    rest = [alike[0] for alike in others]
     message = first.message
-    if rest:
-        named = [_named(fault) for fault in rest[:_NAMED]]
-        more = [f"and {len(rest) - _NAMED} more"] if len(rest) > _NAMED else []
-        message += f". {counted(rest, 'further move')} cannot be driven: "
-        message += "; ".join([*named, *more])
+    if again or rest:
+        of_line = [f"{len(again)} in this line"] if again else []
+        named = [_named(alike) for alike in others[:_NAMED]]
+        more = [f"and {counted(len(rest) - _NAMED, 'more line')}"] if len(rest) > _NAMED else []
+        message += f". {counted(len(faults) - 1, 'further move')} cannot be driven: "
+        message += "; ".join([*of_line, *named, *more])
         other = next((fault for fault in rest if fault.cause is not first.cause), None)
         if other is not None:
             message += f". Move {other.move + 1}: {other.message}"
     return MotionError(message, first.move, first.span, first.cause)
 
 
-def _named(fault: Fault) -> str:
-    """A fault in some words."""
-    line = "" if fault.span is None else f", line {fault.span.line}"
-    return f"move {fault.move + 1}{line} ({fault.cause})"
+def _named(alike: Sequence[Fault]) -> str:
+    """The faults of a line in some words."""
+    first = alike[0]
+    line = "" if first.span is None else f", line {first.span.line}"
+    times = f", {len(alike)} times" if len(alike) > 1 else ""
+    return f"move {first.move + 1}{line} ({first.cause}{times})"
 
 
 @dataclass(frozen=True, repr=False)

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from flyby.core.driving.driven_program import Fault, refusal
 from flyby.core.driving.past_faults import drive, refuse_faults
-from flyby.core.errors import FaultCause, MotionError
+from flyby.core.errors import FaultCause, MotionError, Span
 from flyby.core.motion.command.trajectory import Trajectory
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ, MoveL, Wait
@@ -224,3 +225,15 @@ def test_behind_a_fault_no_line_leads_to_another_posture(abb) -> None:
         for q in part.run.path.q[:: len(part.run.path.q) // 5]
     }
     assert len(driven.faults) == 1 and len(driven.parts) == 2 and len(signs) == 1
+
+
+def test_the_moves_of_a_loop_are_named_by_their_line_and_counted() -> None:
+    line, other = Span("a.mod", 4, 1, 0, 0), Span("a.mod", 7, 1, 0, 0)
+    at = {0: line, 2: line, 4: line, 5: other, 7: other}
+    faults = [Fault(k, FaultCause.REACH, f"no way {k}", span) for k, span in at.items()]
+    error = refusal(faults)
+    assert error.move == 0
+    assert error.message == (
+        "no way 0. 4 further moves cannot be driven: 2 in this line; "
+        "move 6, line 7 (reach, 2 times)"
+    )

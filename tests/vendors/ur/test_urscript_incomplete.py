@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+import flyby
 from flyby.core.errors import LeftOpenError
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
@@ -80,3 +83,54 @@ def test_a_script_in_a_text_file(tmp_path) -> None:
     file = tmp_path / "sent.txt"
     file.write_text(f"{HOME}movel({POSE % 0.3})\n")
     assert heights(UrScript().read_file(file, ReadOptions())) == [0.3]
+
+
+ASKS = """def asks():
+  set_tcp(my_tcp)
+  n = socket_read_ascii_float(2, "cam")
+  text = socket_read_string("cam")
+  if ready_flag and count_of() > 3:
+    textmsg(text)
+  end
+  pose = cam_pose()
+  movel(pose, a=1.2, v=slow)
+  movel(racks[0], a=1.2, v=speeds[1])
+  movej(get_inverse_kin(above), a=1.4, v=1.05)
+  if read_input_integer_register(3) == 1:
+    movel(p[n[1], n[2], 0.3, 0, 3.14, 0], a=read_input_float_register(2))
+  end
+  bridge = rpc_factory("xmlrpc", "http://127.0.0.1:4321")
+end
+"""
+
+
+def test_questions_say_what_an_answer_looks_like(tmp_path) -> None:
+    file = tmp_path / "asks.script"
+    file.write_text(ASKS)
+    asked = {q.key: q for q in flyby.ask(file, robot="ur/ur5e") if q.table == "values"}
+    pose, goal = "pose, m and rad", "pose (m and rad), or six joint values (rad)"
+    assert {key: question.type for key, question in asked.items()} == {
+        "my_tcp": pose,
+        'socket_read_ascii_float(2, "cam")': "list: how many numbers have come, and the numbers",
+        "ready_flag": "true or false",
+        "count_of()": "number",
+        'socket_read_string("cam")': "text",
+        "cam_pose()": goal,
+        "slow": "number",
+        "racks": f"list of: {goal}",
+        "speeds": "list of: number",
+        "above": pose,
+        "read_input_integer_register(3)": "whole number",
+        "read_input_float_register(2)": "number",
+    }
+    assert asked['socket_read_ascii_float(2, "cam")'].example == (2.0, 0.0, 0.0)
+
+
+def test_the_examples_of_all_questions_are_answers(tmp_path) -> None:
+    """A file of which every # is taken away is read, and leaves nothing to ask for."""
+    file, answers = tmp_path / "asks.script", tmp_path / "answers.toml"
+    file.write_text(ASKS)
+    asked = flyby.ask(file, robot="ur/ur5e").toml
+    answers.write_text(re.sub(r"(?m)^#(?=[\"\w])", "", asked))
+    again = flyby.ask(file, robot="ur/ur5e", answers=answers)
+    assert all(q.answered for q in again if q.table == "values")

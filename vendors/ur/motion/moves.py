@@ -22,6 +22,7 @@ from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.spatial.pose import Pose
 from ..syntax.tree import Argument, Call, Expression
+from ..values.answers import used_as
 from ..values.arguments import bind
 from ..values.evaluator import locate
 from ..values.located import NOTHING, Located
@@ -141,7 +142,11 @@ class _MoveReader:
         """Put the move at the end of the program."""
         run = self.run
         run.literals.reader = run.out.move_index
-        *vias, last = [self._target(self.given[name]) for name in self.signature.targets]
+        try:
+            *vias, last = [self._target(self.given[name]) for name in self.signature.targets]
+        except LeftOpenError:
+            self._ask_numbers()
+            raise
         numbers_ = {name: self._number(name) for name in self.signature.others}
         values = {name: value for name, (value, _) in numbers_.items()}
         sources = {name: found.sources for name, (_, found) in numbers_.items()}
@@ -161,6 +166,14 @@ class _MoveReader:
         kind = MoveJ if self.call.name in ("movej", "optimovej") else MoveL
         self._note_kind()
         run.emit_move(kind(last[0], *common), parts)
+
+    def _ask_numbers(self) -> None:
+        """How a move is driven of which nobody knows where to is asked at once, too."""
+        for name in self.signature.others:
+            if name in self.given:
+                expression = self.given[name].value
+                value = locate(self.run, expression, self.scope).value
+                used_as(self.run, expression, value, "number")
 
     def _tool(self) -> Tool:
         settings = self.run.settings
@@ -188,6 +201,7 @@ class _MoveReader:
         found = locate(self.run, expression, self.scope)
         value = found.value
         name = argument.name or "target"
+        used_as(self.run, expression, value, "goal")
         if isinstance(value, PendingInverse):
             return self._solution(value), MovePart(span)
         value = self._known(value, f"the {name} of {self.call.name}", span)
@@ -221,6 +235,7 @@ class _MoveReader:
                 raise self._refusal(f"the target of {self.call.name}", found, span)
             return self._solution(found), MovePart(span)
         goal = locate(self.run, given["x"].value, self.scope)
+        used_as(self.run, given["x"].value, goal.value, "pose")
         value = self._known(goal.value, f"the pose of {INVERSE}", span)
         pose = self._pose(value, given["x"].value)
         sources = covering(goal.sources if value is goal.value else (), _SIX)
@@ -301,6 +316,7 @@ class _MoveReader:
         if not is_number(found.value):
             span = self.texts.span_of(argument)
             unknown = find_unknown(found.value)
+            used_as(self.run, argument.value, found.value, "number")
             if unknown is not None:
                 taken = supposed(found.value)
                 number = float(taken) if is_number(taken) else self.signature.others[name]

@@ -15,6 +15,7 @@ from ....core.errors import InputError
 from ....core.program.tool import FLANGE, Load, Tool
 from ....core.spatial.pose import IDENTITY, Pose, Quaternion, Vector3
 from ..syntax.tree import Call
+from ..values.answers import used_as
 from ..values.arguments import bind
 from ..values.evaluator import Evaluation, evaluate
 from ..values.instructions import Kept
@@ -187,6 +188,8 @@ _CALLS: dict[str, tuple[Change, tuple[str, ...], int]] = {
 }
 
 
+_KINDS = {"pose": "pose", "m": "number"}
+"""Of arguments, as `EXPECTED` has them."""
 _UNKNOWN_PAYLOAD = Kept("set a payload that is not known, where the one before stays in force")
 
 
@@ -199,6 +202,9 @@ def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
     made, parameters, required = _CALLS[call.name]
     given = bind(call, parameters, required, run.texts)
     values = {name: evaluate(run, a.value, scope) for name, a in given.items()}
+    for name, argument in given.items():
+        if name in _KINDS:
+            used_as(run, argument.value, values[name], _KINDS[name])
     unknown = find_unknown(tuple(values.values()))
     if unknown is not None and call.name == "set_tcp":
         run.settings = replace(run.settings, stated=True, unknown=unknown)

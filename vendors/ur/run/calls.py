@@ -15,7 +15,7 @@ from ..motion.kinematics import KINEMATICS
 from ..motion.moves import MovesRun, move
 from ..motion.settings import CALLS, SettingsRun, change
 from ..syntax.tree import Block, Call, MethodCall, Statement
-from ..values.answers import answer, answered
+from ..values.answers import answer, answered, used_as
 from ..values.arguments import bind
 from ..values.evaluator import evaluate, locate, plain
 from ..values.function_calls import compute, list_method, struct
@@ -183,6 +183,7 @@ def _sleep(run: CallsRun, node: Call, scope: Scope) -> Located:
     given = bind(node, ("t",), 1, run.texts)
     value = plain(run, given["t"].value, scope)
     if isinstance(value, Unknown):
+        used_as(run, given["t"].value, value, "number")
         run.keep(node, _UNKNOWN_TIME, "sleep")
         return NOTHING
     if not is_number(value):

@@ -8,9 +8,13 @@ from typing import Protocol
 from ....core.program.question import Answer, QuestionKind
 from ....core.source.execution.answers import About, Course, Fields
 from ..syntax.texts import Texts
-from ..syntax.tree import Call, MethodCall
+from ..syntax.tree import Call, Expression, Index, MethodCall, Name
+from .expected import EXPECTED, list_of, returned_by
+from .instructions import ADD_ONS, asks, kept
 from .values import Struct, Unknown, UrPose, Value
 
+_PROXY = "rpc_factory"
+"""What it returns stands for another computer's functions: no answer can."""
 _LONGEST = 60
 """Characters of a call that stands in messages as it is written."""
 
@@ -33,10 +37,10 @@ def given(run: Asked, call: Call | MethodCall, listed: bool = True) -> Value | N
     Args:
         listed: whether it is listed among the program's questions.
     """
-    name = call.name
-    truth = any(word in name for word in ("digital", "bool", "flag", "is_"))
-    expected: tuple[str, Answer] = ("true or false", False) if truth else ("", 0.0)
-    about = About(run.texts.span_of(call), brought_by(name), *expected)
+    listed = listed and call.name != _PROXY
+    own = asks(call.name) or kept(call.name) not in (None, ADD_ONS)
+    expected = (returned_by(call) if own else None) or ("", None)
+    about = About(run.texts.span_of(call), brought_by(call.name), *expected)
     found = run.course.value(run.texts.text_of(call), about if listed else None)
     return None if found is None else answered(found)
 
@@ -53,7 +57,23 @@ def answer(run: Asked, call: Call | MethodCall, name: str, listed: bool = True) 
         return value
     text = run.texts.text_of(call)
     reason = text if len(text) <= _LONGEST and "\n" not in text else name
-    return Unknown(reason, run.texts.span_of(call))
+    return Unknown(reason, run.texts.span_of(call), key=text)
+
+
+def used_as(run: Asked, expression: Expression, value: Value, kind: str) -> None:
+    """What was asked for turns out to be of a kind, as it is used so.
+
+    Args:
+        expression: that is used: what was asked for, or an element of it.
+        value: of it.
+        kind: of `EXPECTED`.
+    """
+    depth = 0
+    while isinstance(expression, Index):
+        depth += len(expression.indices)
+        expression = expression.base
+    if isinstance(value, Unknown) and value.key and isinstance(expression, Name | Call):
+        run.course.used_as(value.key, *list_of(EXPECTED[kind], depth))
 
 
 _BROUGHT = (

@@ -15,7 +15,7 @@ from ....core.program.question import QuestionKind
 from ....core.source.execution.answers import About, Course
 from ..syntax import tree
 from ..syntax.texts import Texts
-from .answers import answered
+from .answers import answered, used_as
 from .elements import element, whole
 from .located import Located
 from .operators import apply, negate, truth
@@ -88,6 +88,7 @@ def condition(run: Evaluation, expression: tree.Expression, scope: Scope) -> boo
     """
     value = evaluate(run, expression, scope)
     if isinstance(value, bool | Unknown):
+        used_as(run, expression, value, "truth")
         return value
     try:
         return truth(value)
@@ -142,7 +143,9 @@ def _undeclared(run: Evaluation, name: tree.Name) -> Value:
 
 def _open(run: Evaluation, name: tree.Name, reason: str) -> Value:
     answer = run.course.value(name.text, About(run.texts.span_of(name), QuestionKind.DATUM))
-    return Unknown(reason, run.texts.span_of(name)) if answer is None else answered(answer)
+    if answer is None:
+        return Unknown(reason, run.texts.span_of(name), key=name.text)
+    return answered(answer)
 
 
 def _locate_index(run: Evaluation, index: tree.Index, scope: Scope) -> Located:
@@ -240,6 +243,9 @@ def _operation(run: Evaluation, operation: tree.Operation, scope: Scope) -> Valu
         if _decided(symbol, value):
             continue  # controllers need not look at the rest either
         right = plain(run, operand, scope)
+        if isinstance(value, Unknown) or isinstance(right, Unknown):
+            _operated(run, operation.first, value, symbol, right)
+            _operated(run, operand, right, symbol, value)
         try:
             value = apply(symbol, value, right)
         except ValueFault as fault:
@@ -247,6 +253,19 @@ def _operation(run: Evaluation, operation: tree.Operation, scope: Scope) -> Valu
         if isinstance(value, tuple):
             run.work(len(value), run.texts.span_of(operation))
     return value
+
+
+_LOGICAL = frozenset({"and", "or", "xor"})
+_KINDS = {bool: "truth", str: "text", int: "number", float: "number", UrPose: "pose"}
+
+
+def _operated(
+    run: Evaluation, expression: tree.Expression, value: Value, symbol: str, other: Value
+) -> None:
+    """What is not known is of the kind of what it is compared or computed with."""
+    kind = "truth" if symbol in _LOGICAL else _KINDS.get(type(other))
+    if isinstance(value, Unknown) and kind is not None:
+        used_as(run, expression, value, kind)
 
 
 def _decided(symbol: str, left: Value) -> bool:

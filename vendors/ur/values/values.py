@@ -29,12 +29,14 @@ class Unknown:
         held: what a move takes it for: what was computed with zero in its place; None if there is
             no such value.
         damaged: a line that is no statement would have set it: a move takes it for nothing.
+        key: under which it was asked for, as it stands in the program; empty if it was not.
     """
 
     reason: str
     span: Span
     held: Value = None
     damaged: bool = False
+    key: str = ""
 
 
 @dataclass(frozen=True, slots=True)
