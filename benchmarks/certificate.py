@@ -61,13 +61,14 @@ def parts(programs: int) -> Iterator[Figure]:
 
 
 def _against_samples(seed: int) -> Counter[str]:
-    scene, clearance = random_handling(seed), (0.0, 0.003)[seed % 2]
+    scene, clearance = random_handling(seed), (0.0, 0.003, 0.006)[seed % 3]
     cell, program = replace(scene.cell, clearance=clearance), scene.program
     controller = Controller(find_vendor(cell.vendor), cell.robot)
     handling, run = handling_of(program, cell), controller.run(program)
     dense = Controller(find_vendor(cell.vendor), cell.robot, controller.model, DENSE)
     by = worst_fault(cell, handling, dense.plan(program), clearance).by
-    proven = certify(controller, run, handled_scenes(cell, handling, run.path), clearance).proven
+    scenes = handled_scenes(cell, handling, run.path, clearance)
+    proven = certify(controller, run, scenes, clearance).proven
     met = nearest_of(ClearanceMeter(cell, program, handling).over(run.path, 0))
     clear = all(x is None or not (x.overlaps or x.distance < clearance - TOLERANCE) for x in met)
     return Counter(

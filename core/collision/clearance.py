@@ -215,7 +215,8 @@ class ClearanceMeter:
         handling = self._handling
         if handling is None or not (handling.before[move] or handling.behind[move]):
             return scene
-        return set_aside(scene, handling, move, q[[0, -1]], lambda: self._shrunk(move))
+        kept, ends = self._cell.clearance, q[[0, -1]]
+        return set_aside(scene, handling, move, ends, kept, lambda: self._shrunk(move))
 
     def _shrunk(self, move: int) -> CollisionScene:
         """The scene of a move with smaller parts."""

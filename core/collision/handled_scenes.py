@@ -14,7 +14,7 @@ from .scene.handled_pairs import RESTING, set_aside
 from .scene.scene import CollisionScene
 
 
-def handled_scenes(cell: Cell, handling: Handling, path: Path) -> SceneOf:
+def handled_scenes(cell: Cell, handling: Handling, path: Path, clearance: float = 0.0) -> SceneOf:
     """The scenes of a cell with its parts where they are on each move.
 
     On the moves at which a part is taken or released, the pairs that touch there are left out
@@ -26,6 +26,7 @@ def handled_scenes(cell: Cell, handling: Handling, path: Path) -> SceneOf:
         handling: of the program. Others that have the same targets where parts are handled handle
             them alike.
         path: of the program, all of it.
+        clearance: m that is to be kept, with what the motion model leaves open.
     """
     bare: dict[tuple[Tool, float], CollisionScene] = {}
     known: dict[tuple[Tool, int], CollisionScene] = {}
@@ -46,7 +47,7 @@ def handled_scenes(cell: Cell, handling: Handling, path: Path) -> SceneOf:
             if handled and rows.size:
                 ends = path.q[rows[[0, -1]]]
                 made = set_aside(
-                    made, handling, move, ends, lambda: rearranged(tool, parts, RESTING)
+                    made, handling, move, ends, clearance, lambda: rearranged(tool, parts, RESTING)
                 )
             known[key] = made
         return known[key]

@@ -145,7 +145,7 @@ class _Drawn:
             grip = TOP + self._tall + rng.uniform(-0.03, 0.004)
             put = rng.uniform(0.45, 0.75), rng.uniform(-0.35, -0.15)
             off = rng.choice(
-                [0.0, rng.uniform(-0.0019, 0.003), rng.uniform(-0.03, 0.0)], p=[0.5, 0.4, 0.1]
+                [0.0, rng.uniform(-0.0019, 0.006), rng.uniform(-0.03, 0.0)], p=[0.5, 0.4, 0.1]
             )
             room = TOP + self._tall + rng.uniform(0.1, ROOM)
             statements += self._there(x, y, room, grip)
@@ -270,7 +270,7 @@ def _least(
     least = np.full(len(distance), clearance)
     first, second = (scene.bodies[k] for k in scene.pairs[row])
     for end, names in ((0, handling.before[move]), (-1, handling.behind[move])):
-        floor = _floor(first, second, names, float(distance[end]))
+        floor = _floor(first, second, names, float(distance[end]), clearance)
         if floor is not None:
             way = 1 if end == 0 else -1
             apart = np.logical_or.accumulate(distance[::way] >= clearance + APART)[::way]
@@ -278,11 +278,15 @@ def _least(
     return least
 
 
-def _floor(first: Body, second: Body, names: Set[str], at_end: float) -> float | None:
+def _floor(
+    first: Body, second: Body, names: Set[str], at_end: float, clearance: float
+) -> float | None:
     """How deep a pair may be, as negative m; None where it may not touch."""
     handled = [body for body in (first, second) if body.thing in names]
     if first.kind is BodyKind.TOOL and second.kind is BodyKind.PART and handled:
         return min(at_end, 0.0) - RESTING
     held = any(body.kind is BodyKind.HELD for body in handled)
     still = {first.kind, second.kind} & {BodyKind.OBSTACLE, BodyKind.PART}
-    return -RESTING if held and still and at_end < RESTING else None
+    if not held or not still or at_end >= max(clearance, RESTING):
+        return None
+    return -RESTING if at_end < RESTING else 0.0

@@ -115,12 +115,14 @@ class TouchingProof:
                 ends = [(0, len(rows) - 1, min(floor))]
             for begin, end, least in ends:
                 if math.isfinite(least) and begin < end:
-                    key = float(sigma[begin]), float(sigma[end]), least, bool(touching.meshed[row])
+                    meshed = least < 0.0 and bool(touching.meshed[row])
+                    key = float(sigma[begin]), float(sigma[end]), least, meshed
                     asked.setdefault(key, []).append(row)
         found: list[SceneFinding] = []
         for (begin, end, least, meshed), which in asked.items():
             scene = touching.scene if touching.shrunk is None or not meshed else touching.shrunk
-            alone, kept = scene.of_pairs(scene.pairs[which]), CONTACT if meshed else least
+            alone = scene.of_pairs(scene.pairs[which])
+            kept = CONTACT if meshed or least > 0.0 else least
             met = self._prove(alone, 0.0, [(begin, end)], pieces, kept)
             found += [finding._replace(wanted=least) for finding in met]
         return found

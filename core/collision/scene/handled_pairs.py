@@ -26,6 +26,7 @@ def set_aside(
     handling: Handling,
     move: int,
     ends: FloatArray,
+    clearance: float,
     shrunk: Callable[[], CollisionScene],
 ) -> CollisionScene:
     """The scene without the pairs that may touch on a move: these are its ``left_out``.
@@ -33,13 +34,14 @@ def set_aside(
     That is the tool and a part that it takes at the move's end or has released at its beginning,
     and a part that is carried with what it rests on there. A part goes no deeper than `RESTING`
     into what it rests on, and a tool no deeper into a part than where it takes or releases it and
-    as much more.
+    as much more. What a part is beside there, nearer than the clearance, it does not touch.
 
     Args:
         scene: with the parts where they are on the move.
         handling: of the program.
         move: index in the program.
         ends: (2, N), where the move begins and ends.
+        clearance: m, kept where pairs are apart.
         shrunk: gives the same scene with parts smaller by `RESTING`.
     """
     at_end = handling.before[move], handling.behind[move]
@@ -47,7 +49,8 @@ def set_aside(
     if not len(rows):
         return scene
     floor = np.stack(
-        [_floors(scene, rows, names, q) for names, q in zip(at_end, ends, strict=True)], axis=1
+        [_floors(scene, rows, names, q, clearance) for names, q in zip(at_end, ends, strict=True)],
+        axis=1,
     )
     chosen = np.isfinite(floor).any(axis=1)
     rows, floor = rows[chosen], floor[chosen]
@@ -57,6 +60,7 @@ def set_aside(
     meshed = np.array(
         [any(isinstance(scene.bodies[k].solid, TriangleMesh) for k in pair) for pair in pairs]
     )
+    meshed &= (floor < 0.0).any(axis=1)
     smaller = shrunk().of_pairs(pairs) if meshed.any() else None
     which = np.zeros(len(scene.pairs), dtype=np.bool_)
     which[rows] = True
@@ -77,21 +81,26 @@ def _rows_of(scene: CollisionScene, names: Set[str]) -> IntArray:
     return np.array(rows, dtype=np.int64)
 
 
-def _floors(scene: CollisionScene, rows: IntArray, names: Set[str], q: FloatArray) -> FloatArray:
+def _floors(
+    scene: CollisionScene, rows: IntArray, names: Set[str], q: FloatArray, clearance: float
+) -> FloatArray:
     """See ``floor`` of `TouchingPairs`, of one end of the move."""
-    distance, _ = scene.chosen_distances(q[None], (np.zeros_like(rows), rows), RESTING)
+    within = max(RESTING, clearance)
+    distance, _ = scene.chosen_distances(q[None], (np.zeros_like(rows), rows), within)
     floor = np.full(len(rows), math.inf)
-    deepest: dict[tuple[str, str], float] = {}
     bodies = [[scene.bodies[k] for k in scene.pairs[row]] for row in rows]
+    deepest: dict[tuple[str, str], float] = {}
     for (first, second), d in zip(bodies, distance.tolist(), strict=True):
-        deepest[first.thing, second.thing] = min(deepest.get((first.thing, second.thing), 0.0), d)
+        key = first.thing, second.thing
+        deepest[key] = min(deepest.get(key, 0.0), d)
     for k, (first, second) in enumerate(bodies):
         if first.kind is BodyKind.TOOL and second.kind is BodyKind.PART:
             if second.thing in names:
                 floor[k] = deepest[first.thing, second.thing] - RESTING
-        elif distance[k] < RESTING:
+        elif distance[k] < within:
             held = first if first.kind is BodyKind.HELD else second
-            floor[k] = -RESTING if held.thing in names else math.inf
+            if held.thing in names:
+                floor[k] = -RESTING if distance[k] < RESTING else TOUCH
     return floor
 
 
@@ -148,8 +157,7 @@ def counted_distances(touching: TouchingPairs, q: FloatArray, clearance: float) 
     )
     deep = distance < least
     if touching.shrunk is not None:
-        deep[:, touching.meshed] = (
-            touching.shrunk.distances(q, 1.0).distance[:, touching.meshed] <= 0.0
-        )
+        into_mesh = touching.meshed & (least < 0.0)
+        deep[into_mesh] = touching.shrunk.distances(q, APART).distance[into_mesh] <= 0.0
     near = distance < max(clearance, TOUCH)
     return np.where(np.where(before | behind, deep, near), distance, math.inf)

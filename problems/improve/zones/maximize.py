@@ -102,7 +102,9 @@ class _Maximization:
         self._scenes: SceneOf = scenes_of(cell)
         if options.handling is not None:
             path = controller.plan(program, options.start)
-            self._scenes = handled_scenes(cell, options.handling, path)
+            self._scenes = handled_scenes(
+                cell, options.handling, path, self._wanted + options.residual
+            )
         self._feasibility = ProgramFeasibility(
             controller,
             self._scenes,

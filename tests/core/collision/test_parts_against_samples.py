@@ -21,7 +21,7 @@ DENSE = Sampling(step=0.002, turn=0.01, joint=0.003, halvings=1, most=5000)
 
 
 @settings(max_examples=8)
-@given(st.integers(0, 10**9), st.sampled_from([0.0, 0.003]))
+@given(st.integers(0, 10**9), st.sampled_from([0.0, 0.003, 0.006]))
 def test_nothing_is_proven_or_found_clear_that_dense_samples_contradict(seed, clearance) -> None:
     """A larger run of the same: ``python benchmarks/certificate.py --case parts``."""
     scene = random_handling(seed)
@@ -30,7 +30,8 @@ def test_nothing_is_proven_or_found_clear_that_dense_samples_contradict(seed, cl
     handling, run = handling_of(program, cell), controller.run(program)
     dense = Controller(find_vendor("ur"), cell.robot, controller.model, DENSE).plan(program)
     fault = worst_fault(cell, handling, dense, clearance)
-    made = certify(controller, run, handled_scenes(cell, handling, run.path), clearance)
+    scenes = handled_scenes(cell, handling, run.path, clearance)
+    made = certify(controller, run, scenes, clearance)
     met = nearest_of(ClearanceMeter(cell, program, handling).over(run.path, 0))
     checked = all(x is None or not (x.overlaps or x.distance < clearance - 1e-5) for x in met)
     if fault.by > TOLERANCE + 1e-6:
