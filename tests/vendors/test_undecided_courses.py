@@ -50,7 +50,7 @@ class Dialect:
 LANGUAGES = {
     "abb": Dialect(
         "m.mod",
-        "MODULE m\nPROC main()\nVAR num n:=0; VAR num k; VAR bool go:=TRUE;\n"
+        "MODULE m\nPROC main()\nVAR num n:=0; VAR num k; VAR bool go:=TRUE; VAR jointtarget j;\n"
         "BODY\nENDPROC\nENDMODULE\n",
         f"MoveAbsJ [[#,0,0,0,0,0],[{EXTERNAL}]],v100,fine,tool0;",
         ("di1=1", "di2=1"),
@@ -294,6 +294,13 @@ CASES = {
         "N=0\nLOOP\n<A>\nN=N+1\nIF <IN> AND (N>0) THEN\nEXIT\nENDIF\nENDLOOP\n<B>",
         "while True:\n<A>\nn = n + 1\nif <IN> and n > 0:\nbreak\nend\nend\n<B>",
         "A B",
+        WAY_OUT,
+    ),
+    "a place that is asked and decides nothing": Case(
+        "WHILE TRUE DO\n<A>\nj:=CJointT();\n<B>\nIF <IN> GOTO out;\nENDWHILE\nout:\n<C>",
+        "LOOP\n<A>\nI=$AXIS_ACT.A1\n<B>\nIF <IN> THEN\nEXIT\nENDIF\nENDLOOP\n<C>",
+        "while True:\n<A>\nj = get_actual_joint_positions()\n<B>\nif <IN>:\nbreak\nend\nend\n<C>",
+        "A B C",
         WAY_OUT,
     ),
     "a way out that is taken late": Case(

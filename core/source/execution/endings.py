@@ -11,7 +11,7 @@ from ...program.cycle import Cycle
 from .analysis import Analysis
 from .branches import Branches, Skip
 from .host import Host, Snapshot
-from .steps import NOTHING, Block, Exit
+from .steps import NOTHING, PLACE, Block, Exit
 
 FOLLOWED = 100
 """Passes of a loop without a condition that gets on and moves the robot, after which a way out is
@@ -198,7 +198,9 @@ class Endings(Generic[Block]):
         if passes.looked:
             if host.course.turned != passes.turned:
                 return True
-            if host.position_asked != passes.asked and host.place is not passes.place:
+            decides = passes.watched is None or PLACE in passes.watched
+            asked = host.position_asked != passes.asked
+            if decides and asked and host.place is not passes.place:
                 return True
         read = host.outputs.asked_since(passes.mark)
         held = host.outputs.held()
@@ -303,7 +305,7 @@ class Endings(Generic[Block]):
         if passes.polled or not self._analysis.moves(loop.body):
             return False
         passes.polled = True
-        left = host.leave_to_others(self._analysis.guards_of_motion(loop.body), loop.span)
+        left = host.leave_to_others(self._analysis.guards_of_motion(loop.body) - {PLACE}, loop.span)
         if not left:
             return False
         host.note_once(

@@ -14,6 +14,8 @@ Block = TypeVar("Block")
 """What a language takes for a block of statements; told apart by identity."""
 
 NOTHING: frozenset[str] = frozenset()
+PLACE = "(where the robot stands)"
+"""Among names of data: the robot's present position, which every move writes."""
 
 
 class Exit(IntEnum):

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.steps import NOTHING, Exit, Step
+from ....core.source.execution.steps import NOTHING, PLACE, Exit, Step
 from ....core.source.text.lexer import words
 from ..syntax import tree
 from ..syntax.traversal import calls_in, expressions_of, names_in
@@ -22,6 +22,13 @@ _ENDING = frozenset({"exit", "raise"})
 _LEAVING = frozenset({"exitcycle", "errraise", "raisetouser"})
 _STEPPING = words("incr decr add clear bitset bitclear getdataval getsysdata bookerrno")
 _WRITING_FUNCTIONS = frozenset({"strtoval", "getnextsym", "readdir"})
+_PLACE_READING = frozenset({"crobt", "cpos", "cjointt", "calcjointt"})
+
+
+def data_read(expression: tree.Expression) -> frozenset[str]:
+    """Lower-case names of the data that an expression reads, the robot's place among them."""
+    asks = any(call.name in _PLACE_READING for call in calls_in(expression))
+    return frozenset(names_in(expression)) | ({PLACE} if asks else NOTHING)
 
 
 class RapidTree:
@@ -79,7 +86,7 @@ class RapidTree:
             for call in calls_in(e)
             for name in self._handed(call.name, call.arguments, home)
         )
-        names = frozenset[str]().union(*map(names_in, expressions))
+        names = frozenset[str]().union(*map(data_read, expressions))
         if inner:
             return Step(
                 reads=names,

@@ -13,13 +13,13 @@ from ....core.source.execution.endings import Loop
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
-from ..syntax.traversal import calls_in, names_in
+from ..syntax.traversal import calls_in
 from ..syntax.tree import Block, Expression, For, If, Test, Truth, While
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply
 from ..values.scope import Scope, Variable
 from ..values.types import NUM, Unknown, Value, find_unknown
-from .analysis import RapidTree
+from .analysis import RapidTree, data_read
 from .waits import suppose
 
 
@@ -187,7 +187,7 @@ def run_while(run: Carrying, statement: While, scope: Scope) -> None:
         statement.body,
         condition.span,
         f"WHILE {run.text_of(condition)}",
-        frozenset(names_in(condition)),
+        data_read(condition),
         asks=any(run.tree.called(condition, scope.home)),
         endless=isinstance(condition, Truth) and condition.value,
         ended=lambda: suppose(run.evaluator, condition, scope, False),

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from ....core.errors import SourceError
-from ....core.source.execution.steps import NOTHING, Exit, Step
+from ....core.source.execution.steps import NOTHING, PLACE, Exit, Step
 from ....core.source.text.lexer import words
 from ..syntax import tree
 from ..syntax.traversal import calls_in, data_in, indices_in
 from ..values.data import Data
 from ..values.elements import Names
 from ..values.functions import COMPUTED
-from ..values.predefined import OUTPUTS
+from ..values.predefined import OUTPUTS, POSITION
 from ..values.scope import Module, Scope
 from .instructions import kept
 
@@ -73,6 +73,8 @@ class KrlTree:
         for expression in expressions:
             for datum in data_in(expression):
                 found |= self.outputs(datum, home) or {datum.name}
+                if datum.name in POSITION:
+                    found.add(PLACE)
                 found |= self.data_read(indices_in(datum), home)
         return frozenset(found)
 

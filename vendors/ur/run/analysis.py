@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from ....core.source.execution.steps import Exit, Step
+from ....core.source.execution.steps import PLACE, Exit, Step
 from ....core.source.text.lexer import words
+from ..motion.kinematics import KINEMATICS
 from ..syntax import tree
 from ..syntax.traversal import (
     all_statements,
@@ -61,8 +62,10 @@ class ScriptTree:
         )
 
     def reads(self, expression: tree.Expression) -> frozenset[str]:
-        """Names of the variables and outputs that an expression reads itself."""
-        return frozenset(names_in(expression)) | read_by(calls_written(expression))
+        """Names of the variables and outputs that an expression reads itself, and the robot's
+        place."""
+        names = frozenset(names_in(expression)) | read_by(calls_written(expression))
+        return names if KINEMATICS.keys().isdisjoint(_called(expression)) else names | {PLACE}
 
     def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
         """See `core.source.execution.steps.Tree.steps`."""

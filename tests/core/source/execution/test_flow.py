@@ -16,7 +16,7 @@ from flyby.core.source.execution.flow import Flow
 from flyby.core.source.execution.host import Undecided
 from flyby.core.source.execution.limits import ExecutionLimits, Meter
 from flyby.core.source.execution.outputs import Outputs
-from flyby.core.source.execution.steps import Exit, Step
+from flyby.core.source.execution.steps import PLACE, Exit, Step
 
 UNKNOWN = object()
 Value = object
@@ -432,7 +432,10 @@ def test_a_position_that_is_asked_for_lets_a_loop_get_on() -> None:
             self.position_asked += 1
             return len(self.driven) < 3
 
-    assert Asking().execute(While(below("n", 3), block(A)), B) == "A A A B"
+    here = Asked((PLACE,), lambda data: True)
+    assert Asking().execute(While(here, block(A)), B) == "A A A B"
+    elsewhere = Asked(("n",), lambda data: True)
+    assert Asking().execute(While(elsewhere, block(A)), B) == "A", "it does not decide"
 
 
 def test_outputs_that_only_others_change_end_a_loop() -> None:
