@@ -107,7 +107,7 @@ class Elasticity:
         "sine of the joint; joints beyond have none",
         unit="rad",
         default=(),
-        fit=_LEAD,
+        fit=FitRange(-0.05, 0.05, 1e-3),
     )
     coupled: tuple[Coupled, ...] = figure(
         "coupled", Tables(Coupled), Stage.LEAD, "joints that the torque on others bends", default=()

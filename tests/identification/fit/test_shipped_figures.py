@@ -20,6 +20,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.identification.corners import measure_corner
 from flyby.identification.fit import ParameterSet, prepare
+from flyby.identification.fit.keys import fit_of, value_of
 from flyby.identification.fit.outcome import predicted
 from flyby.identification.fit.parameters import fitted_before
 from flyby.identification.fit.problem import first_nuisances
@@ -40,6 +41,15 @@ RUNS = {
 @pytest.fixture(scope="module")
 def controller() -> Controller:
     return Controller(find_vendor("abb"), find_robot(ROBOT))
+
+
+def test_usual_ranges_hold_what_is_shipped(controller) -> None:
+    """Else who fits a figure without a range of his own cannot leave it."""
+    model = controller.model
+    for text in fitted_before(model):
+        for key in text.partition(" in ")[0].split(" + "):
+            asked, value = fit_of(key), value_of(model, key)
+            assert value is not None and asked.lower < value < asked.upper, key
 
 
 def apex(controller: Controller, radius: float, speed: float) -> float:
