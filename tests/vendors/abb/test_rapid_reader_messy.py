@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import flyby
 from flyby.core.errors import FlybyError, SourceError, Span
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.origin import Ownership
@@ -381,3 +382,54 @@ def test_joint_values_that_nothing_sets_are_asked_for():
     answers = Answers(values={"j": ((1.0,) * 6, (9e9,) * 6)})
     made = vendor.read(text, "m.mod", answers=answers)
     assert made.moves[0].target.joints == pytest.approx([0.017453292519943295] * 6)
+
+
+ASKS = """MODULE asks
+  VAR num x; VAR speeddata vFast; VAR bool b;
+  CONST orient DOWN := [0,1,0,0];
+  PROC main()
+    MoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;
+    x := target_pos.x;
+    vFast := [travel_speed, 500, 5000, 1000];
+    IF go_home OR NOT is_safe THEN TPWrite "home"; ENDIF
+    TEST arm_cmd
+    CASE "PICK": drop 3, v_drop;
+    CASE "STAY": TPWrite "stay";
+    ENDTEST
+    b := reached;
+    IF b AND count_left > 2 TPWrite "more";
+    pNow := CRobT(\\Tool:=tHand \\WObj:=wTable);
+    MoveJ pick_at, v_pick, z_pick, tPick \\WObj:=wPick;
+  ENDPROC
+  PROC drop(num n, speeddata v)
+    MoveL [[600,0,500+n],DOWN,[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]], v, fine, tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_questions_say_what_an_answer_looks_like(tmp_path) -> None:
+    file = tmp_path / "asks.mod"
+    file.write_text(ASKS)
+    asked = flyby.ask(file, robot="abb/irb1600-6-145")
+    assert {q.key: q.type for q in asked if q.table == "values"} == {
+        "target_pos.x": "number",
+        "travel_speed": "number",
+        "go_home": "true or false",
+        "is_safe": "true or false",
+        "arm_cmd": "text",
+        "v_drop": "speeddata",
+        "reached": "true or false",
+        "count_left": "number",
+        "tHand": "tooldata",
+        "wTable": "wobjdata",
+        "pick_at": "robtarget",
+        "v_pick": "speeddata",
+        "z_pick": "zonedata",
+        "tPick": "tooldata",
+        "wPick": "wobjdata",
+    }
+    answers = tmp_path / "answers.toml"
+    answers.write_text(re.sub(r"(?m)^#(?=[\"\w])", "", asked.toml))
+    again = flyby.ask(file, robot="abb/irb1600-6-145", answers=answers)
+    assert all(q.answered for q in again if q.table == "values")

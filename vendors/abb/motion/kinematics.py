@@ -238,6 +238,7 @@ class RobotFunctions:
         found = evaluator.locate(given, scope)
         if find_unknown(found.value) is None:
             return found
+        evaluator.answers.used_as(given, found.value, type_)
         use = "the tool" if type_ is TOOLDATA else "the work object"
         value = evaluator.assumed(found.value, type_, use, given.span)
         return replace(found, value=value)

@@ -6,6 +6,7 @@ Arguments: "RAPID Reference Manual", instructions MoveAbsJ, MoveC, MoveJ, MoveL.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -396,12 +397,17 @@ def read_move(
     via: PoseTarget | None = None
     via_part: MovePart | None = None
     target: PoseTarget | JointTarget
-    if form.kind in ("absolute", "external"):
-        target, part = reader.joint_target(form.kind == "external")
-    else:
-        if arc is not None:
-            via, via_part = reader.pose_target("CirPoint", follow)
-        target, part = reader.pose_target("ToPoint", follow)
+    try:
+        if form.kind in ("absolute", "external"):
+            target, part = reader.joint_target(form.kind == "external")
+        else:
+            if arc is not None:
+                via, via_part = reader.pose_target("CirPoint", follow)
+            target, part = reader.pose_target("ToPoint", follow)
+    except NotDriven:
+        with suppress(NotDriven, SourceError):  # what else is not known is asked at once, too
+            reader.common()
+        raise
     common, speed_part, zone_part = reader.common()
     parts = MoveParts(bound.span, part, speed_part, zone_part, via_part)
     lost = run.settings.lost_of((*_OF_ALL, *_OF_KIND.get(form.kind, ())))

@@ -109,6 +109,7 @@ def _parameter(
     if parameter.mode != "in" or parameter.dimensions:
         return _referred(evaluator, parameter, type_, expression, caller)
     found = evaluator.locate(expression, caller, asking=not isinstance(type_, Foreign))
+    evaluator.answers.used_as(expression, found.value, type_)
     if find_unknown(found.value) is None:
         evaluator.check(found.value, type_, f"parameter {parameter.name}", expression.span)
     name = found.cell.name if found.cell is not None else parameter.name

@@ -16,7 +16,7 @@ from ....core.source.execution.limits import Meter
 from ..syntax.traversal import calls_in
 from ..syntax.tree import Block, Expression, For, If, Test, Truth, While
 from ..values.evaluator import Evaluator
-from ..values.operators import OperandError, apply
+from ..values.operators import OperandError, apply, operand_type
 from ..values.scope import Scope, Variable
 from ..values.types import NUM, Unknown, Value, find_unknown
 from .analysis import RapidTree, data_read
@@ -43,7 +43,7 @@ class Carrying(Protocol):
 def run_if(run: Carrying, statement: If, scope: Scope) -> None:
     """``IF``: the first branch whose condition holds."""
     for number, branch in enumerate(statement.branches):
-        value = run.evaluator.evaluate(branch.condition, scope)
+        value = run.evaluator.condition(branch.condition, scope)
         if isinstance(value, Unknown):
             possible = [*[False] * number, True, *_possible(run, statement, number + 1, scope)]
             blocks = [b.body for b in statement.branches]
@@ -64,6 +64,7 @@ def run_test(run: Carrying, test: Test, scope: Scope) -> None:
             value = run.evaluator.evaluate(expression, scope)
             unknown = find_unknown(subject) or find_unknown(value)
             if unknown is not None:
+                run.evaluator.answers.used_as(test.subject, subject, operand_type("=", value))
                 possible = [n >= number for n in range(len(test.cases) + 1)]
                 blocks = [c.body for c in test.cases]
                 _choose(run, blocks, test.otherwise, possible, test.subject, unknown, scope)
@@ -174,7 +175,7 @@ def run_while(run: Carrying, statement: While, scope: Scope) -> None:
     condition = statement.condition
 
     def goes_on() -> bool | Undecided:
-        value = run.evaluator.evaluate(condition, scope)
+        value = run.evaluator.condition(condition, scope)
         if isinstance(value, Unknown):
             return Undecided(value.reason)
         return run.evaluator.truth(value, "WHILE", condition.span)

@@ -36,7 +36,7 @@ from ..values.data import Globals
 from ..values.errors import BOOKED, NO_ROUTINE, NUMBERS, ProgramError
 from ..values.evaluator import Evaluator
 from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable, unknown_name
-from ..values.types import STRING, Unknown, Value, interpreted, mismatch
+from ..values.types import STRING, Unknown, Value, find_unknown, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .flow import run_for, run_if, run_test, run_while
@@ -273,6 +273,10 @@ class Interpreter:
             self._invoke(statement, scope)
         elif isinstance(statement, tree.Assign):
             value = self.evaluator.evaluate(statement.value, scope)
+            if not statement.target.path and find_unknown(value) is not None:
+                cell = scope.find(statement.target.name)
+                if cell is not None and not cell.dimensions:
+                    self.evaluator.answers.used_as(statement.value, value, cell.type)
             self.evaluator.assign(statement.target, value, scope)
         elif isinstance(statement, tree.If):
             run_if(self, statement, scope)

@@ -10,9 +10,10 @@ from collections.abc import Callable
 from ....core.errors import Span
 from ....core.program.question import Answer, QuestionKind
 from ....core.source.execution.answers import About, AnswerError, Course, Fields
+from ..syntax import tree
 from .elements import array_mismatch
 from .question_kinds import example_of, type_in_words
-from .types import STRING, Foreign, RecordType, Scalar, Type, Value
+from .types import STRING, Foreign, RecordType, Scalar, Type, Unknown, Value
 
 _TRUTH = re.compile(r"\b(TRUE|FALSE)\b", re.IGNORECASE)
 
@@ -62,6 +63,25 @@ class TypedAnswers:
         if answer is None:
             return None
         return _free(answer) if type_ is None else _typed(answer, type_, sizes, key, span)
+
+    def used_as(self, expression: tree.Expression, value: Value, type_: Type | None) -> None:
+        """What was asked turns out to be of a type, as it is used so.
+
+        Args:
+            expression: that is used: what was asked, or an aggregate with it.
+            value: of it.
+        """
+        if isinstance(expression, tree.Aggregate) and isinstance(value, tuple):
+            if isinstance(type_, RecordType) and len(value) == len(type_.components):
+                parts = zip(expression.items, value, type_.components.values(), strict=True)
+                for item, part, component in parts:
+                    self.used_as(item, part, component)
+            return
+        if not isinstance(value, Unknown) or not value.key or isinstance(type_, Foreign | None):
+            return
+        example = example_of(type_)
+        if example is not None and value.key == self.key(expression.span):
+            self._course.used_as(value.key, type_in_words(type_), example)
 
     def assumed(self, span: Span, message: str) -> None:
         """Note what is taken where there is no answer."""

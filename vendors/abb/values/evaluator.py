@@ -29,7 +29,7 @@ from .elements import (
 from .errors import NOT_PRESENT, NUMBERS, ProgramError
 from .function_calls import SPECIAL, Special, function_value
 from .located import Located
-from .operators import OperandError, apply, negate
+from .operators import OperandError, apply, negate, operand_type
 from .predefined import RECORDS
 from .provenance import Literal, source_of_literal
 from .question_kinds import kind_brought_by
@@ -119,6 +119,8 @@ class Evaluator:
             return self._operation(expression, scope)
         if isinstance(expression, tree.Unary):
             operand = self.evaluate(expression.operand, scope)
+            logical = expression.operator == "not"
+            self.answers.used_as(expression.operand, operand, BOOL if logical else NUM)
             try:
                 return negate(expression.operator, operand)
             except OperandError as error:
@@ -219,6 +221,12 @@ class Evaluator:
         """A known num."""
         value = self.known(expression, scope, NUM, use)
         assert isinstance(value, float)
+        return value
+
+    def condition(self, expression: tree.Expression, scope: Scope) -> Value:
+        """The value of an expression that is true or false, or not known."""
+        value = self.evaluate(expression, scope)
+        self.answers.used_as(expression, value, BOOL)
         return value
 
     def truth(self, value: Value, use: str, span: Span) -> bool:
@@ -548,6 +556,9 @@ class Evaluator:
         value = self.evaluate(operation.first, scope)
         for symbol, operand in operation.rest:
             right = self.evaluate(operand, scope)
+            if isinstance(value, Unknown) or isinstance(right, Unknown):
+                self.answers.used_as(operation.first, value, operand_type(symbol, right))
+                self.answers.used_as(operand, right, operand_type(symbol, value))
             if symbol in ("=", "<>"):
                 value, right = like_signals(value, right)
             try:

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from ....core.errors import SourceError, Span
 from .defaults import beside, carried, nominal
 from .errors import DIVISION_BY_ZERO, NUMBERS, TOO_LONG, ProgramError
-from .types import Unknown, Value, describe, find_unknown
+from .types import BOOL, NUM, STRING, Type, Unknown, Value, describe, find_unknown
 
 STRING_LIMIT = 80
 """Characters that a RAPID string holds."""
@@ -89,6 +89,13 @@ def _of_defaults(symbol: str, left: Value, right: Value) -> Value | None:
         return apply(symbol, a, b)
     except OperandError:
         return None
+
+
+def operand_type(symbol: str, other: Value) -> Type | None:
+    """The type of what stands beside another operand; None if nobody can say."""
+    if symbol in ("and", "or", "xor"):
+        return BOOL
+    return next((t for t in (NUM, BOOL, STRING) if type(other) is t.python), None)
 
 
 def negate(symbol: str, value: Value) -> Value:
