@@ -87,6 +87,10 @@ class LeftOpenError(SourceError):
     """What a statement does depends on what only the running controller knows."""
 
 
+class LostError(LeftOpenError):
+    """What a statement does depends on what a damaged line would have said."""
+
+
 class ParseError(SourceError):
     """A text is not written in its language: it is wrong or cut off at a place."""
 

@@ -322,18 +322,49 @@ _SETTINGS = {
     "slow(0.2)": "slow(0.2",
     "set_tcp(p[0,0,0.1,0,0,0])": "set_tcp(p[0,0,]",
     "set_payload(2)": "set_payload()) 2",
+    "grip(1)": "grip(1",
 }
-_SLOW = "DEF demo( )\nBAS(#INITMOV,0)\n{}\nEND\nDEF slow(v:IN)\nREAL v\n$VEL.CP=v\nEND\n"
+_PLACES = ("TOOL", "BASE", "LDAT", "tcp", "grip")
+"""In the settings that say where moves go: frames, and how they turn the tool."""
+_ROUTINES = {
+    "slow": "DEF demo( )\nBAS(#INITMOV,0)\n{}\nEND\nDEF slow(v:IN)\nREAL v\n$VEL.CP=v\nEND\n",
+    "grip": "def demo():\n  def grip(n):\n    set_tcp(p[0,0,0.1*n,0,0,0])\n  end\n{}\nend\n",
+}
 
 
 @pytest.mark.parametrize("whole", _SETTINGS)
 def test_moves_behind_a_damaged_setting_are_faults_until_it_is_set_again(whole) -> None:
     """A speed, a tool or a payload from before would give a time that nobody can vouch for."""
-    language = "ur" if whole.startswith("set_") else "kuka"
-    line, text = _LINE[language], _SLOW if whole.startswith("slow") else "{}"
+    language = "ur" if whole.startswith(("set_", "grip")) else "kuka"
+    line, text = _LINE[language], _ROUTINES.get(whole.partition("(")[0], "{}")
     made = read(language, HOME[language], line, _SETTINGS[whole], line, whole, line, text=text)
-    assert [bool(move.open) for move in made.moves] == [False, False, True, False]
-    assert "mend that line" in str(made.moves[2].open)
+    lost = [move.open or move.unsettled for move in made.moves]
+    assert list(map(bool, lost)) == [False, False, True, False]
+    assert "mend that line" in lost[2]
+    # Behind a move whose target is known the robot stands there.
+    assert bool(made.moves[2].open) == any(word in whole for word in _PLACES)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_time_is_claimed_for_one_move_alone(language) -> None:
+    """The robot stands at the target of a move of which nobody knows how it is driven."""
+    lines = {
+        "abb": ("VelSet 10 100;", "VelSet 100,5000;", LOW["abb"].replace("MoveJ", "MoveL")),
+        "kuka": ("$VEL.CP = ", "$VEL.CP=0.2", _LINE["kuka"]),
+        "ur": ("set_payload()) 2", "set_payload(2)", _LINE["ur"]),
+    }
+    damaged, whole, line = lines[language]
+    controller = Controller(find_vendor(language), find_robot(ROBOTS[language]))
+    back = {"abb": LOW["abb"].replace("500]", "600]"), **HOME}[language]
+    driven = drive(controller, read(language, HOME[language], damaged, line, whole, back))
+    assert [(fault.move, fault.cause) for fault in driven.faults] == [(1, FaultCause.OPEN)]
+    assert not driven.program.moves[1].open
+
+
+def test_a_damaged_call_of_what_sets_a_load_loses_it() -> None:
+    text = FRAME["abb"].replace("PROC main", "PROC hold()\nGripLoad load1;\nENDPROC\nPROC main")
+    made = read("abb", HOME["abb"], "hold load1 load2;", LOW["abb"], text=text)
+    assert "line" in made.moves[1].unsettled
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -6,7 +6,7 @@ It is asked only where a run meets a condition that is not known, or a loop; the
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from .steps import NOTHING, Block, Exit, Step, Tree
 
@@ -14,6 +14,20 @@ _NONE_LEFT_OUT: frozenset[int] = frozenset()
 Found = TypeVar("Found")
 Way = tuple[Exit, str | None]
 """How a block is left, and the label where it is left by a jump."""
+
+
+class Lost(NamedTuple):
+    """What nobody knows behind a damaged statement.
+
+    Args:
+        moves: whether it may have moved the robot: where it stands.
+        settings: names of those that it may have changed.
+        data: names of those that it may have written.
+    """
+
+    moves: bool
+    settings: frozenset[str]
+    data: frozenset[str]
 
 
 class Analysis(Generic[Block]):
@@ -54,6 +68,20 @@ class Analysis(Generic[Block]):
             return any(step.sent for step in self._reached(block, _NONE_LEFT_OUT))
 
         return self._once("sent", block, False, find)
+
+    def lost(self, step: Step[Block]) -> Lost:
+        """What nobody knows behind a damaged statement.
+
+        Args:
+            step: what its words say: settings and routines that it names, a datum that it writes.
+        """
+        called = step.calls
+        sets = (one.sets for body in called for one in self._reached(body, _NONE_LEFT_OUT))
+        return Lost(
+            step.moves or any(map(self.moves, called)),
+            step.sets.union(*sets),
+            step.writes.union(*map(self.written, called)),
+        )
 
     def move_count(self, block: Block) -> int:
         """How many statements in a block, and in the routines that it calls, move the robot."""

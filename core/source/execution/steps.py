@@ -43,6 +43,7 @@ class Step(Generic[Block]):
         reads: names of the data that its own expressions read; of a statement with blocks in it:
             its conditions.
         writes: names of the data that it may write itself, arguments by reference among them.
+        sets: names of the settings that it changes for the moves behind it.
         made_of: names of the data that what it writes is made of.
         outputs: names of the outputs that it may write itself; None for any of them.
         calls: bodies of the program's routines that it calls.
@@ -61,6 +62,7 @@ class Step(Generic[Block]):
     sent: bool = False
     reads: frozenset[str] = NOTHING
     writes: frozenset[str] = NOTHING
+    sets: frozenset[str] = NOTHING
     made_of: frozenset[str] = NOTHING
     outputs: frozenset[str] | None = NOTHING
     calls: tuple[Block, ...] = ()

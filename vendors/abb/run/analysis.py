@@ -9,6 +9,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.steps import NOTHING, PLACE, Exit, Step
 from ....core.source.text.lexer import words
+from ..motion.settings_instructions import SETS
 from ..syntax import tree
 from ..syntax.traversal import calls_in, expressions_of, names_in
 from ..values.data import Globals
@@ -117,6 +118,7 @@ class RapidTree:
         target = statement.target
         return Step(
             moves=not MOVING.isdisjoint(statement.words),
+            sets=NOTHING.union(*(SETS.get(word, ()) for word in statement.words)),
             writes=frozenset({target.name}) if isinstance(target, tree.Name) else NOTHING,
             calls=tuple(self.body(routine) for routine in found if routine is not None),
         )
@@ -177,6 +179,7 @@ class RapidTree:
         return Step(
             moves=name in MOVING,
             sent=name in KEPT and KEPT[name].sent,
+            sets=frozenset(SETS.get(name, ())),
             writes=brought | given,
             made_of=names,
             outputs=handed if name in WRITING else NOTHING,

@@ -9,7 +9,6 @@ from typing import Protocol
 from ....core.errors import SourceError, Span
 from ....core.source.execution.answers import Course
 from ..motion.settings import SettingsInForce
-from ..motion.settings_instructions import SETS
 from ..syntax import tree
 from ..values.defaults import nominal
 from ..values.scope import Scope
@@ -110,10 +109,11 @@ def _leave_open(run: SteppingRun, statement: tree.Invoke, scope: Scope) -> None:
 def step_over_unread(run: SteppingRun, statement: tree.Unread, scope: Scope) -> None:
     """What is damaged: nobody knows what it does to what it names."""
     step = run.tree.unread(statement, scope.home)
+    known_no_more = run.analysis.lost(step)
     line = f"line {statement.span.line}"
     head = _HEAD.match(run.out.text_of(statement.span))
-    if head is not None:
-        run.settings.lose(SETS.get(head[0].lower(), ()), f"{head[0]}, damaged in {line}")
+    named = "what stands there" if head is None else head[0]
+    run.settings.lose(known_no_more.settings, f"{named}, damaged in {line}")
     if isinstance(statement.target, tree.Name):
         reason = f"the value of {statement.target.text}, damaged in {line}"
         with suppress(SourceError):  # a constant stays one
@@ -121,6 +121,5 @@ def step_over_unread(run: SteppingRun, statement: tree.Unread, scope: Scope) -> 
             run.evaluator.assign(statement.target, unknown, scope)
     for body in step.calls:
         share_written(run, body, f"a damaged call in {line}", statement.span)
-    moves = step.moves or any(map(run.analysis.moves, step.calls))
-    if not moves or not run.open_move(statement.error, statement.span):
+    if not known_no_more.moves or not run.open_move(statement.error, statement.span):
         run.out.keep(statement.span, "", "")

@@ -7,7 +7,7 @@ which the controllers have switched on, a percentage of a PTP is ``$ACC_AXIS`` i
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
@@ -67,7 +67,7 @@ class Basis:
         if damaged is None:
             handler(self, value, call.span)
         else:
-            self.spoil(command, damaged)
+            self.spoil(set_by({command or ""}), damaged)
         self.changed()
 
     def _damaged(self, command: str | None, value: Value | None) -> Unknown | None:
@@ -77,9 +77,9 @@ class Basis:
         found = [find_unknown(part) for part in made_of if part is not None]
         return next((one for one in found if one is not None and one.damaged), None)
 
-    def spoil(self, command: str | None, unknown: Unknown) -> None:
-        """What a command sets is not known; of a command that is not known, all that any sets."""
-        for name in _SETS.get(command or "", _ALL):
+    def spoil(self, names: Iterable[str], unknown: Unknown) -> None:
+        """What would have set these system variables is not known."""
+        for name in names:
             self.set(name, unknown)
 
     def _command(self, first: Expression, scope: Scope) -> str | None:
@@ -371,7 +371,14 @@ _SETS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("out_sync", "out_async", "group", "ex_bas"), ()),
 }
 """The system variables that a command sets; the others set all of them."""
-COMMANDS = frozenset(_COMMANDS)
+
+
+def set_by(words: Collection[str]) -> frozenset[str]:
+    """The system variables that a call of BAS sets, by the words in it; all if no command is."""
+    command = next((word for word in sorted(words) if word in _COMMANDS), "")
+    return frozenset(_SETS.get(command, _ALL))
+
+
 _DATA_OF = {
     **dict.fromkeys(("ptp_dat",), ("PDAT_ACT",)),
     **dict.fromkeys(("cp_dat",), ("LDAT_ACT",)),

@@ -10,14 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
-from ....core.errors import InputError, LeftOpenError, SourceError, Span
+from ....core.errors import InputError, LeftOpenError, LostError, SourceError, Span
 from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.move import Move, MoveC, MoveJ, MoveL, Opaque
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
-from ....core.program.zone import Zone
+from ....core.program.zone import FINE, Zone
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
@@ -44,12 +45,25 @@ from ..values.values import (
 from .arcs import beyond
 from .frames import Placements
 from .position import Position
-from .settings import Settings
+from .settings import Set, Settings
 from .targets import AXIS_NUMBERS, POSE_NUMBERS, ReadTarget, Targets, is_axes
 from .triggers import Triggers
 
 Common = tuple[Speed, Zone, Tool, WorkObject, Load | None]
 """What every move has beside its target."""
+
+
+class Manner(NamedTuple):
+    """How a move is driven.
+
+    Args:
+        sources: what its speed and its zone are made of.
+        unsettled: why nobody knows it; empty if that is known.
+    """
+
+    common: Common
+    sources: tuple[Sources, Sources]
+    unsettled: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,10 +146,11 @@ class MotionReader:
                     f"{motion.word.upper()} takes a position, not axis values", motion.span
                 )
             found = self._constant_orientation(found, start, placement, motion)
-        common, *sources = self._common(motion, joint, placement)
+        how = self._common(motion, joint, placement)
         kind = MoveJ if joint else MoveL
-        move: Move = kind(found.target, *common, events=self.triggers.taken())
-        self._emit(motion, move, found, sources)
+        events = self.triggers.taken()
+        move: Move = kind(found.target, *how.common, events=events, unsettled=how.unsettled)
+        self._emit(motion, move, found, how.sources)
 
     # --------------------------------------------------------------------- one kind each
 
@@ -201,16 +216,17 @@ class MotionReader:
             found = replace(found, target=end, complete=complete)
             found = self._constant_orientation(found, start, placement, motion)
             part = motion if number == len(arcs) else replace(motion, passed=True)
-            common, *sources = self._common(part, False, placement)
+            how = self._common(part, False, placement)
             assert isinstance(found.target, PoseTarget)
             move = MoveC(
                 found.target,
-                *common,
+                *how.common,
                 via=middle,
                 orientation=self._arc_orientation(motion),
                 events=events,
+                unsettled=how.unsettled,
             )
-            self._emit(motion, move, found, sources, via_part)
+            self._emit(motion, move, found, how.sources, via_part)
             events = ()
 
     def _by_angle(
@@ -390,20 +406,24 @@ class MotionReader:
             if source is not None:
                 self.evaluator.reads.by_expression(source, self.transcript.move_index)  # type: ignore[arg-type]
 
-    def _common(
-        self, motion: MotionInstruction, joint: bool, placement: Placement
-    ) -> tuple[Common, Sources, Sources]:
-        """What every move has, and what its speed and zone are made of."""
-        settings, span = self.settings, motion.span
-        speed = settings.joint_speed(span) if joint else settings.path_speed(span)
+    def _common(self, motion: MotionInstruction, joint: bool, placement: Placement) -> Manner:
+        """How a move is driven."""
+        settings, span, lost = self.settings, motion.span, ""
+        try:
+            speed = settings.joint_speed(span) if joint else settings.path_speed(span)
+        except LostError as error:
+            speed, lost = Set(Speed(joint_fraction=1.0), Sources(())), error.message
         spline = motion.word.startswith("s")
-        if motion.passed:
-            zone = settings.passing(joint)
-        else:
-            zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
+        try:
+            if motion.passed:
+                zone = settings.passing(joint)
+            else:
+                zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
+        except LostError as error:
+            zone, lost = Set(FINE, Sources(())), lost or error.message
         assert isinstance(speed.value, Speed) and not isinstance(zone.value, Speed)
         at = placement.tool, placement.work_object, placement.load
-        return (speed.value, zone.value, *at), speed.sources, zone.sources
+        return Manner((speed.value, zone.value, *at), (speed.sources, zone.sources), lost)
 
     def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> MovePart:
         reads, index = self.evaluator.reads, self.transcript.move_index

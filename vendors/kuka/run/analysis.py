@@ -8,12 +8,13 @@ from contextlib import suppress
 from ....core.errors import SourceError
 from ....core.source.execution.steps import NOTHING, PLACE, Exit, Step
 from ....core.source.text.lexer import words
+from ..motion.bas import set_by
 from ..syntax import tree
 from ..syntax.traversal import calls_in, data_in, indices_in
 from ..values.data import Data
 from ..values.elements import Names
 from ..values.functions import COMPUTED
-from ..values.predefined import OUTPUTS, POSITION
+from ..values.predefined import MOTION, OUTPUTS, POSITION
 from ..values.scope import Module, Scope
 from .instructions import kept
 
@@ -128,6 +129,7 @@ class KrlTree:
         return Step(
             moves=isinstance(statement, tree.MotionInstruction | tree.SplineBlock),
             writes=handed | writes,
+            sets=writes & MOTION,
             made_of=names,
             outputs=outputs,
             calls=functions,
@@ -145,6 +147,7 @@ class KrlTree:
         return Step(
             moves=not _MOVING.isdisjoint(statement.words),
             writes=frozenset({target.name}) if isinstance(target, tree.Name) else NOTHING,
+            sets=set_by(statement.words) if NATIVE & statement.words else NOTHING,
             calls=tuple(body for body in bodies if body is not None),
         )
 
@@ -185,6 +188,7 @@ class KrlTree:
         return Step(
             sent=known is not None and known.sent,
             writes=written,
+            sets=set_by(_commands(call)) if call.name in NATIVE else NOTHING,
             made_of=names,
             outputs=outputs,
             calls=functions,
@@ -244,3 +248,9 @@ def _evaluated(statement: tree.Statement) -> Iterator[tree.Expression]:
         yield statement.value
     elif isinstance(statement, tree.WaitSec):
         yield statement.time
+
+
+def _commands(call: tree.Call) -> frozenset[str]:
+    """The command of a call of BAS, where it is written as a constant."""
+    first = call.arguments[0] if call.arguments else None
+    return frozenset({first.name} if isinstance(first, tree.Constant) else ())

@@ -21,7 +21,7 @@ from ....core.source.execution.limits import Meter
 from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import Transcript
 from ....core.source.reading import ReadOptions
-from ..motion.bas import COMMANDS, Basis
+from ..motion.bas import Basis
 from ..motion.frames import Placements
 from ..motion.inline_forms import InlineForms
 from ..motion.kinematics import Kinematics
@@ -75,7 +75,7 @@ from ..values.predefined import MOTION, SILENT, STOPS_WHEN_SET
 from ..values.scope import Scope
 from ..values.types import KrlTypeError, convert
 from ..values.values import Array, Pending, Unknown, Value
-from .analysis import NATIVE, KrlTree
+from .analysis import KrlTree
 from .calls import Calls
 from .exits import Finished, Jump
 from .flow import Flow
@@ -291,7 +291,7 @@ class Interpreter:
 
     def _unread(self, statement: Unread, scope: Scope) -> None:
         # Nobody knows what it does to what it names.
-        step = self._tree.unread(statement, scope.module)
+        known_no_more = self._analysis.lost(self._tree.unread(statement, scope.module))
         target = statement.target
         would = f"damaged line {statement.span.line} would have set"
         if isinstance(target, Name):
@@ -299,14 +299,13 @@ class Interpreter:
             with suppress(SourceError):  # a constant stays one
                 self._evaluator.assign(target, unknown, scope, statement.span)
         lost = Unknown(f"what {would}", statement.span, damaged=True)
-        if not NATIVE.isdisjoint(statement.words):
-            command = next(iter(sorted(statement.words & COMMANDS)), None)
-            self._basis.spoil(command, lost)
-        for body in step.calls:
-            for name in self._analysis.written(body) & MOTION:
-                self._data.system[name].value = lost
+        self._basis.spoil(known_no_more.settings, lost)
+        for name in known_no_more.data - {target.name if isinstance(target, Name) else ""}:
+            cell = None if name.startswith("$") else self._data.find(name, scope)
+            if cell is not None and cell.signal is None and not cell.constant:
+                cell.value = lost
         self._system_changed()
-        if not step.moves and not any(map(self._analysis.moves, step.calls)):
+        if not known_no_more.moves:
             self._transcript.keep(statement.span, "", "")
         elif self._transcript.leaves_open(statement.error, statement.span):
             self._meter.move(statement.span)

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from ....core.door import spelt
-from ....core.errors import LeftOpenError, Span
+from ....core.errors import LeftOpenError, LostError, Span
 from ....core.files.toml_text import key_text
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.source.text.files import SourceText
@@ -232,7 +232,7 @@ def find_unknown(value: Value | Pending) -> Unknown | None:
 def left_open(what: str, unknown: Unknown, span: Span) -> LeftOpenError:
     """The error that something depends on a value that is not known."""
     if unknown.damaged:
-        return LeftOpenError(f"{what} depends on {unknown.reason}: mend that line", span)
+        return LostError(f"{what} depends on {unknown.reason}: mend that line", span)
     where = f" (read at line {unknown.span.line})" if unknown.span.line != span.line else ""
     return LeftOpenError(
         f"{what} depends on {unknown.reason}{where}, which the text does not say: name the file "

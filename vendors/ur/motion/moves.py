@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Protocol
 
 from ....core.door import spelt
-from ....core.errors import InputError, LeftOpenError, SourceError, Span
+from ....core.errors import InputError, LeftOpenError, LostError, SourceError, Span
 from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.move import Move, MoveC, MoveJ, MoveL
 from ....core.program.speed import Speed
@@ -136,6 +136,7 @@ class _MoveReader:
         names = self.signature.names
         self.given = bind(call, names, len(self.signature.targets), run.texts)
         self.span = run.texts.span_of(call)
+        self.unsettled = ""
         self.tool = self._tool()
 
     def read(self) -> None:
@@ -165,7 +166,7 @@ class _MoveReader:
             return
         kind = MoveJ if self.call.name in ("movej", "optimovej") else MoveL
         self._note_kind()
-        run.emit_move(kind(last[0], *common), parts)
+        run.emit_move(kind(last[0], *common, unsettled=self.unsettled), parts)
 
     def _ask_numbers(self) -> None:
         """How a move is driven of which nobody knows where to is asked at once, too."""
@@ -180,7 +181,8 @@ class _MoveReader:
         if settings.unknown is not None:
             self._taken("the TCP of the move", settings.unknown, "the one before")
         if settings.load_lost is not None:
-            raise self._refusal("the payload of the move", settings.load_lost, self.span)
+            lost = self._refusal("the payload of the move", settings.load_lost, self.span)
+            self.unsettled = lost.message
         if not settings.stated:
             self.run.out.notes.once(
                 "tcp",
@@ -299,7 +301,7 @@ class _MoveReader:
 
     def _refusal(self, what: str, unknown: Unknown, span: Span) -> LeftOpenError:
         if unknown.damaged:
-            return LeftOpenError(f"{what} depends on {unknown.reason}: mend that line", span)
+            return LostError(f"{what} depends on {unknown.reason}: mend that line", span)
         return LeftOpenError(
             f"{what} depends on {unknown.reason}: answer it in a file ({spelt('answers')}), "
             "[values], where `flyby ask` lists its name, or take the move out",
@@ -320,7 +322,11 @@ class _MoveReader:
             if unknown is not None:
                 taken = supposed(found.value)
                 number = float(taken) if is_number(taken) else self.signature.others[name]
-                self._taken(f"'{name}' of {self.call.name}", unknown, f"{number:g}")
+                what = f"'{name}' of {self.call.name}"
+                try:
+                    self._taken(what, unknown, f"{number:g}")
+                except LostError as error:
+                    self.unsettled = self.unsettled or error.message
                 return number, Located(None)
             raise SourceError(
                 f"'{name}' of {self.call.name} is a number, not {describe(found.value)}", span
@@ -368,7 +374,13 @@ class _MoveReader:
         else:
             orientation = ArcOrientation.FOLLOWS_ARC
             target = self._turned_along(middle, target)
-        return MoveC(target, *common, via=middle, orientation=orientation)  # type: ignore[arg-type]
+        return MoveC(
+            target,
+            *common,  # type: ignore[arg-type]
+            via=middle,
+            orientation=orientation,
+            unsettled=self.unsettled,
+        )
 
     def _as_pose(self, target: Target) -> PoseTarget:
         if isinstance(target, PoseTarget):

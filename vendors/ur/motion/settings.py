@@ -223,11 +223,11 @@ def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
     return NOTHING
 
 
-def spoiled(settings: Settings, words: frozenset[str], lost: Unknown) -> Settings:
-    """The settings behind a damaged statement, by the words in it."""
-    if "set_tcp" in words:
+def spoiled(settings: Settings, calls: frozenset[str], lost: Unknown) -> Settings:
+    """The settings behind a damaged statement, which may have made some of `CALLS`."""
+    if "set_tcp" in calls:
         settings = replace(settings, stated=True, unknown=lost)
-    if not words.isdisjoint(CALLS - {"set_tcp"}):
+    if calls - {"set_tcp"}:
         settings = replace(settings, load_lost=lost)
     return settings
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from ....core.source.execution.steps import PLACE, Exit, Step
 from ....core.source.text.lexer import words
 from ..motion.kinematics import KINEMATICS
+from ..motion.settings import CALLS as SETTING
 from ..syntax import tree
 from ..syntax.traversal import (
     all_statements,
@@ -84,6 +85,7 @@ class ScriptTree:
             sent=not foreign.isdisjoint(_SENT - self._moves),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
+            sets=frozenset(foreign) & SETTING,
             made_of=names,
             outputs=frozenset(written_by(call for e in expressions for call in calls_written(e))),
             calls=self.bodies(called),
@@ -100,6 +102,7 @@ class ScriptTree:
         return Step(
             moves=not _MOVING.isdisjoint(statement.words),
             writes=frozenset() if target is None else frozenset({target.text}),
+            sets=statement.words & SETTING,
             calls=self.bodies(sorted(statement.words)),
         )
 

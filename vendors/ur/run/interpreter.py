@@ -270,14 +270,18 @@ def _keyword(run: Interpreter, statement: Keyword, scope: Scope) -> None:
 
 def _unread(run: Interpreter, statement: Unread, scope: Scope) -> None:
     span = run.texts.span_of(statement)
-    step = run.tree.unread(statement)
+    known_no_more = run.analysis.lost(run.tree.unread(statement))
     would = f"damaged line {span.line} would have set"
     if statement.target is not None:
         lost = Unknown(f"'{statement.target.text}', which {would}", span, damaged=True)
         store(run, statement.target, Located(lost), scope)
     lost = Unknown(f"what {would}", span, damaged=True)
-    run.settings = spoiled(run.settings, statement.words, lost)
-    if step.moves or any(map(run.analysis.moves, step.calls)):
+    run.settings = spoiled(run.settings, known_no_more.settings, lost)
+    for name in known_no_more.data - {"" if statement.target is None else statement.target.text}:
+        cell = run.root.find(name)
+        if cell is not None:
+            cell.value, cell.sources = lost, ()
+    if known_no_more.moves:
         run.stopped_somewhere(SourceError(statement.message, span), span)
     else:
         run.out.keep(span, "", "")
