@@ -118,6 +118,21 @@ def test_what_is_asked_is_listed(piece: str, vendor: str) -> None:
         assert any(t == table and (keys == "*" or k in keys.split("|")) for t, k in found), found
 
 
+STANDS = {
+    "abb": "jHere:=CJointT();",
+    "kuka": "AHERE=$AXIS_ACT",
+    "ur": "here = get_actual_joint_positions()",
+}
+
+
+@pytest.mark.parametrize("vendor", VENDORS)
+def test_where_the_robot_stands_is_asked_only_where_nobody_knows_it(vendor: str) -> None:
+    whole = WHOLE[vendor].replace("PROC main()", "VAR jointtarget jHere;\nPROC main()")
+    whole = whole.replace("DECL INT", "DECL E6AXIS AHERE\nDECL INT")
+    known = read(vendor, whole.replace("BODY", f"{GO[vendor]}\n{STANDS[vendor]}"))
+    assert not known.questions
+
+
 @settings(max_examples=25, deadline=None)
 @given(st.sampled_from(VENDORS), st.lists(st.sampled_from(sorted(PIECES)), max_size=5))
 def test_the_file_changes_nothing_and_lists_what_is_used(vendor: str, pieces: list[str]) -> None:

@@ -68,19 +68,26 @@ def _flange_pose(run: KinematicsRun, call: Call, scope: Scope) -> Located:
 
 
 def _pose(run: KinematicsRun, call: Call, tool: Tool) -> Located:
-    told = given(run, call)
+    told = given(run, call, listed=False)
     if told is not None:
         return Located(_as_pose(told))
     pose = run.position.pose(tool, f"{call.name}()", run.texts.span_of(call))
-    return Located(pose if isinstance(pose, Unknown) else value_of(pose))
+    return Located(_listed(run, call, pose) if isinstance(pose, Unknown) else value_of(pose))
+
+
+def _listed(run: KinematicsRun, call: Call, unknown: Unknown) -> Unknown:
+    """The user may say what the kinematics do not know."""
+    given(run, call)
+    return unknown
 
 
 def _unless_told(ask: Callable[[KinematicsRun, Call, Scope], Value]) -> Ask:
     """The user's answer goes before what the kinematics say."""
 
     def asked(run: KinematicsRun, call: Call, scope: Scope) -> Located:
-        told = given(run, call)
-        return Located(ask(run, call, scope) if told is None else told)
+        told = given(run, call, listed=False)
+        value = ask(run, call, scope) if told is None else told
+        return Located(_listed(run, call, value) if isinstance(value, Unknown) else value)
 
     return asked
 
