@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import cached_property
 from pathlib import Path
 
 from ....core.backup.contents import BackupNotes, names_below
@@ -36,9 +37,17 @@ class Contents:
         """A file by its name in a list, with ``/`` or ``\\``, in whatever case; None if absent."""
         return self._folded.get(name.replace("\\", "/").strip("/").casefold())
 
+    def task(self, folder: str) -> str:
+        """Where a task's folder is: below ``RAPID``, or where that was not copied, the root."""
+        return folder if self._without_rapid else f"RAPID/{folder}"
+
+    @cached_property
+    def _without_rapid(self) -> bool:
+        return not any(name.startswith("rapid/") for name in self._folded)
+
     def below(self, folder: str) -> list[str]:
-        """All files below a folder, whatever the case of its name."""
-        head = folder.casefold() + "/"
+        """All files below a folder, whatever the case of its name; ``""`` for the root."""
+        head = f"{folder.casefold()}/" if folder else ""
         return [name for name in self.names if name.casefold().startswith(head)]
 
     def source(self, name: str) -> SourceFile:

@@ -10,6 +10,9 @@ CONFIGURATIONS = ("sys", "moc", "eio", "proc", "mmc", "sio")
 
 _BACKINFO = re.compile(r"(?:(.*)/)?backinfo/backinfo\.txt", re.IGNORECASE | re.DOTALL)
 _TASK = re.compile(r"(?:(.*?)/)?rapid/task\d+/(?:progmod|sysmod)/[^/]+", re.IGNORECASE | re.DOTALL)
+_MODULES = re.compile(
+    r"(?:(.*?)/)??(?:task\d+/)?(?:progmod|sysmod)/[^/]+", re.IGNORECASE | re.DOTALL
+)
 _CONFIGURATION = re.compile(
     rf"(?:(.*)/)?({'|'.join(CONFIGURATIONS)})\.cfg", re.IGNORECASE | re.DOTALL
 )
@@ -26,8 +29,21 @@ def root_in(names: Sequence[str]) -> str | None:
     """
     for found in (_found(_BACKINFO, names), _found(_TASK, names), _of_parameters(names)):
         if found:
-            return min(found, key=lambda root: (root.count("/") + bool(root), root.casefold()))
+            return _outermost(found)
     return None
+
+
+def modules_in(names: Sequence[str]) -> str | None:
+    """The folder that holds a part of a backup, copied without what marks it: ``TASKn`` folders, or
+    ``PROGMOD`` and ``SYSMOD``; see `BackupOpener.programs_in`. The outermost, the first by name."""
+    return _outermost(_found(_MODULES, names))
+
+
+def _outermost(roots: Iterable[str]) -> str | None:
+    def order(root: str) -> tuple[int, str]:
+        return root.count("/") + bool(root), root.casefold()
+
+    return min(roots, key=order, default=None)
 
 
 def _found(mark: re.Pattern[str], names: Iterable[str]) -> list[str]:

@@ -107,8 +107,8 @@ def _of_products(products: Sequence[str], find_robot: FindRobot) -> tuple[Backup
         found = find_arm("", [product] if product else [], find_robot)
         lacks = [found.lack] if found.lack else []
         lacks.append(
-            "MOC.cfg, which has ranges, base and external axes, cannot be read: those of the type "
-            "are taken, in the world's origin"
+            "MOC.cfg, which has ranges, base and external axes, is missing or damaged: those of "
+            "the type are taken, in the world's origin"
         )
         robots.append(BackupRobot(name or f"ROB_{number}", product, found.robot, tuple(lacks)))
     return tuple(robots)

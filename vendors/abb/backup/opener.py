@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .marks import root_in
+from .marks import modules_in, root_in
 
 if TYPE_CHECKING:
     from ....core.backup.backup import Backup
@@ -21,8 +21,8 @@ class Opener:
         return root_in(names)
 
     def programs_in(self, names: Sequence[str]) -> str | None:
-        """None: single programs are read by themselves."""
-        return None
+        """See `marks.modules_in`."""
+        return modules_in(names)
 
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder; see `BackupOpener.open`."""

@@ -15,7 +15,7 @@ from .backinfo import BackInfo, arms_in, parse_backinfo
 from .cfg import Parameters, parse_parameters
 from .contents import Contents
 from .declared import Declared
-from .marks import root_in
+from .marks import modules_in, root_in
 from .mechanics import mechanics_of
 from .modules import ModuleFiles
 from .planner import motion_figures
@@ -38,10 +38,10 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
 def _opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
     notes = BackupNotes()
     contents = Contents(root, notes)
-    if root_in(contents.names) is None:
+    if root_in(contents.names) is None and modules_in(contents.names) is None:
         raise InputError(
             f"{source}: no backup of an ABB controller: neither BACKINFO/backinfo.txt nor "
-            "RAPID/TASKn nor SYSPAR/MOC.cfg is in it"
+            "RAPID/TASKn nor PROGMOD nor SYSPAR/MOC.cfg is in it"
         )
     text = contents.text("BACKINFO/backinfo.txt")
     info = parse_backinfo(text or "")

@@ -20,7 +20,7 @@ from .cfg import Parameters, Record
 from .contents import Contents
 from .modules import ModuleFile, ModuleFiles, doubled, moving_routines
 
-_FOLDER = re.compile(r"rapid/(task\d+)/(?:progmod|sysmod)/[^/]+", re.IGNORECASE)
+_FOLDER = re.compile(r"(?:(?:rapid/)?(task\d+)/)?(?:progmod|sysmod)/[^/]+", re.IGNORECASE)
 _SHARED = "TASK0"
 """Where IRC5 and OmniCore keep modules that all tasks share; S4C+ kept its only task there."""
 _MAIN = "main"
@@ -81,7 +81,7 @@ def loaded_tasks(
     elif named:
         notes.add(
             "BACKINFO/backinfo.txt, the list of loaded modules, is not in the backup: all modules "
-            "of each folder RAPID/TASKn are taken as loaded"
+            "of each task's folder are taken as loaded"
         )
     return found
 
@@ -106,7 +106,7 @@ def _files(
     missing = _Missing()
     names: list[str] = []
     for one in task.modules or _all_modules(contents, task):
-        name = one if isinstance(one, str) else f"RAPID/{task.folder}/{one.file}"
+        name = one if isinstance(one, str) else f"{contents.task(task.folder)}/{one.file}"
         found = contents.find(name)
         if found is None:
             missing.absent.append(name.rpartition("/")[2])
@@ -122,7 +122,7 @@ def _files(
                 notes.add(f"the module is left out: {file.fault}", file.name, file.line)
         else:
             readable.append(file)
-    place = f"RAPID/{task.folder}"
+    place = contents.task(task.folder)
     if faults > _FAULTS:
         notes.add(f"{place}: {faults - _FAULTS} more modules cannot be parsed and are left out")
     if missing.absent:
@@ -140,9 +140,9 @@ def _files(
 def _all_modules(contents: Contents, task: ListedTask) -> list[str]:
     return [
         name
-        for name in contents.below(f"RAPID/{task.folder}")
+        for name in contents.below(contents.task(task.folder))
         if (found := _FOLDER.fullmatch(name)) is not None
-        and found[1].upper() == task.folder
+        and (found[1] or "").upper() == task.folder
         and name.lower().endswith(MODULES)
     ]
 
@@ -176,15 +176,13 @@ def _note_unlisted(contents: Contents, tasks: Sequence[ListedTask], notes: Backu
 
 def _named_folders(contents: Contents, sys: Parameters) -> list[ListedTask]:
     """Tasks by their folders, called as SYS.cfg has them where it has as many."""
-    names = {found[1].upper() for found in map(_FOLDER.fullmatch, contents.names) if found}
-    folders = sorted(names, key=lambda name: int(name[4:]))
+    found = filter(None, map(_FOLDER.fullmatch, contents.names))
+    folders = sorted({(one[1] or "").upper() for one in found}, key=lambda name: int(name[4:] or 0))
     records = sys.section("CAB_TASKS")
     own = [folder for folder in folders if folder != _SHARED] or folders
-    called = dict(zip(own, records, strict=True)) if len(own) == len(records) else {}
-    return [
-        ListedTask(folder, called[folder].name if folder in called else "", "", (), 1)
-        for folder in folders
-    ]
+    paired = zip(own, records, strict=True) if len(own) == len(records) else ()
+    called = {folder: record.name for folder, record in paired} | {"": contents.root.name}
+    return [ListedTask(folder, called.get(folder, ""), "", (), 1) for folder in folders]
 
 
 # arms and entries

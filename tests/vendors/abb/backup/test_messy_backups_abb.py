@@ -146,9 +146,30 @@ def test_without_the_list_all_modules_are_loaded(tmp_path: Path) -> None:
     shutil.rmtree(root / "BACKINFO")
     backup = opened(root)
     (note,) = texts(backup)
-    assert "all modules of each folder RAPID/TASKn are taken as loaded" in note
+    assert "all modules of each task's folder are taken as loaded" in note
     (task,) = backup.tasks
     assert (task.name, task.robot, task.entry, len(task.files)) == ("T_ROB1", 0, "Main", 2)
+
+
+@pytest.mark.parametrize(
+    ("copied", "name", "main"),
+    [
+        ("RAPID", "TASK1", "TASK1/PROGMOD/MainModule.mod"),
+        ("RAPID/TASK1", "TASK1", "PROGMOD/MainModule.mod"),
+    ],
+)
+def test_a_folder_copied_out_of_a_backup(tmp_path: Path, copied: str, name: str, main: str) -> None:
+    root = Station().write(tmp_path) / copied
+    assert OPENER.root_in(names_of(root)) is None
+    assert OPENER.programs_in(names_of(root)) == ""
+    assert OPENER.programs_in([f"a/b/{one}" for one in names_of(root)]) == "a/b"
+    (task,) = opened(root).tasks
+    assert (task.name, task.robot, task.main, task.entry) == (name, 0, main, "Main")
+    assert len(task.files) == 2
+
+
+def test_modules_in_no_folder_of_a_task_are_no_backup() -> None:
+    assert OPENER.programs_in(["main.mod", "PROG/main.mod", "SYSMOD"]) is None
 
 
 def test_names_that_are_declared_twice(tmp_path: Path) -> None:
