@@ -13,7 +13,7 @@
   end.
 - ``own_corpus_first_command_fraction``: the share that is emulated to the end by the first command
   that a user would give, ``flyby emulate FILE --robot NAME``, without answers or other files;
-  programs of which parts are missing count too.
+  programs of which parts are missing count too, and those that move nothing, if the index says so.
 
 Needs the project's tests beside it: pip install flyby[testing]
 """
@@ -296,12 +296,12 @@ def run_fraction(case: str) -> float:
 def first_command_fraction(case: str) -> float:
     """The share of the corpus that is emulated to the end with nothing but the robot's name."""
     programs = [
-        (index.parent / entry["file"], entry["robot"])
+        (index.parent / entry["file"], entry["robot"], entry.get("moves") == 0)
         for index in sorted((CORPUS / case).rglob("index.toml"))
         for entry in tomllib.loads(index.read_text("utf-8"))["program"]
     ]
     done = 0
-    for path, robot in programs:
+    for path, robot, stands in programs:
         try:
             emulation = flyby.emulate(flyby.read(path, robot=robot), robot=robot)
         except FlybyError as error:
@@ -309,7 +309,7 @@ def first_command_fraction(case: str) -> float:
             continue
         for fault in emulation.faults:
             print(f"{path.name}: {fault}", file=sys.stderr)
-        done += not emulation.faults and emulation.duration > 0
+        done += not emulation.faults and (stands or emulation.duration > 0)
     return done / len(programs)
 
 

@@ -27,7 +27,7 @@ def test_it_is_driven_at_the_first_command(folder: Path, entry: dict[str, Any]) 
         assert said in messages
     run = flyby.emulate(program)
     assert len(program.moves) - len(run.faults) == entry["moves"]
-    assert run.duration > 0
+    assert run.duration > 0 or not program.moves
 
 
 @pytest.mark.parametrize(("language", "least"), [("krl", 25), ("urscript", 20), ("rapid", 8)])
