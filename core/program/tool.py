@@ -77,6 +77,8 @@ class WorkObject:
         robot_held: the robot carries the work object (stationary TCP).
         moved_by: name of the external axis whose table carries the user frame; None if it stands
             still.
+        not_followed: name of a unit that moves it and is none of this robot's (a conveyor, another
+            robot); it is taken to stand where it is declared.
     """
 
     name: str = "wobj0"
@@ -84,6 +86,7 @@ class WorkObject:
     frame: Pose = IDENTITY
     robot_held: bool = False
     moved_by: str | None = None
+    not_followed: str | None = None
 
     @property
     def pose(self) -> Pose:

@@ -49,7 +49,8 @@ def actions_of(run: Run, words: SignalWords | None) -> tuple[Action, ...]:
     """What a driven program does, in the order of its own clock.
 
     Outputs that are set at a fly-by point count at the zone's middle; the program may be there
-    from where the zone begins. Waits count when the robot has come to rest.
+    from where the zone begins. Waits count when the robot has come to rest; where it does not stop
+    for them, as outputs do.
 
     Args:
         run: the whole program as driven.
@@ -77,7 +78,8 @@ def _between(run: Run, words: SignalWords, places: _Places) -> Iterator[Action]:
                 continue
             reached, left = places.of(move)
             time = max(reached, left - total.get(move, 0.0) + waited)
-            earliest = places.entered(move) if isinstance(does, SetSignal) else time
+            ahead = isinstance(does, SetSignal) or not statement.stops
+            earliest = places.entered(move) if ahead else time
             text = _in_a_line(statement.text)
             yield Action(does, time, move, text, statement.span, min(earliest, time))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -49,6 +49,8 @@ class PairClearance:
 class StationProver:
     """Proves the clearances of a station; motions are swept once.
 
+    Robots that may pass through zones which waits stand behind are proven with both paths.
+
     Args:
         station: the robots.
         actions: of their programs that bear on others.
@@ -70,6 +72,11 @@ class StationProver:
             else self._swept(member)
             for name, member in station.members.items()
         }
+        self._passing = {
+            name: self._swept(replace(member, run=member.passing.run))
+            for name, member in station.members.items()
+            if member.passing is not None
+        }
         self._provers: dict[tuple[str, str], PairProver] = {}
         if before is not None:
             for pair, prover in before._provers.items():
@@ -90,18 +97,38 @@ class StationProver:
         )
 
     def prover(self, one: str, other: str) -> PairProver:
-        """Of two robots."""
+        """Of two robots that stop for all waits."""
         if (one, other) not in self._provers:
-            allowed = [
-                pair
-                for a, b in self._station.allowed
-                for pair in (_own(a, b, one, other), _own(b, a, one, other))
-                if pair is not None
-            ]
-            self._provers[one, other] = PairProver(
-                self._motions[one], self._motions[other], allowed
-            )
+            self._provers[one, other] = self._of(one, other, (self._motions, self._motions))
         return self._provers[one, other]
+
+    def _of(
+        self, one: str, other: str, motions: tuple[Mapping[str, RobotMotion], ...]
+    ) -> PairProver:
+        allowed = [
+            pair
+            for a, b in self._station.allowed
+            for pair in (_own(a, b, one, other), _own(b, a, one, other))
+            if pair is not None
+        ]
+        return PairProver(motions[0][one], motions[1][other], allowed)
+
+    def _variants(self, one: str, other: str) -> Iterator[tuple[PairProver, tuple[bool, bool]]]:
+        """Provers of two robots, and which of them passes through zones that waits stand behind."""
+        yield self.prover(one, other), (False, False)
+        for passes in ((True, False), (False, True), (True, True)):
+            if all(
+                name in self._passing
+                for name, passing in zip((one, other), passes, strict=True)
+                if passing
+            ):
+                chosen = tuple(self._passing if p else self._motions for p in passes)
+                yield self._of(one, other, chosen), passes
+
+    def any_time(self, one: str, other: str) -> PairVerdict:
+        """What is proven of two robots whatever the clocks say."""
+        meetings, wanted = Meetings.at_any_time(), self._station.clearance
+        return _worst(p.prove(wanted, meetings) for p, _ in self._variants(one, other))
 
     def all(
         self,
@@ -127,21 +154,33 @@ class StationProver:
     def _pair(
         self, one: str, other: str, run: StationRun, jitter: float, orders: Orders | None
     ) -> PairClearance:
+        in_time, least, at = self.in_time(one, other, run, jitter)
+        any_time = self.any_time(one, other)
+        interlocked = None
+        if orders is not None and not any_time.proven:
+            interlocked = self.interlocked(one, other, orders, self._actions)
+        return PairClearance((one, other), in_time, any_time, interlocked, least, at)
+
+    def in_time(
+        self, one: str, other: str, run: StationRun, jitter: float
+    ) -> tuple[PairVerdict, float, float]:
+        """What is proven of two robots for a schedule, and the least distance met, m, and when, s.
+
+        Args:
+            one, other: the robots, that stop for all waits.
+            run, jitter: see `all`.
+        """
         prover, clearance = self.prover(one, other), self._station.clearance
         schedules = run.schedules[one], run.schedules[other]
         least, at = self._sampled(prover, schedules)
         clocks = schedules[0].clocked, schedules[1].clocked
         until = at + _SAMPLED[0] if least < clearance else np.inf
         meetings = Meetings(clocks, 2.0 * jitter, every=False, until=until)
-        in_time = prover.prove(clearance, meetings)
-        if in_time.proven and until < np.inf:
+        verdict = prover.prove(clearance, meetings)
+        if verdict.proven and until < np.inf:
             # What samples took for too near is not: nothing behind it is known yet.
-            in_time = prover.prove(clearance, replace(meetings, until=np.inf))
-        any_time = prover.prove(clearance, Meetings.at_any_time())
-        interlocked = None
-        if orders is not None and not any_time.proven:
-            interlocked = self.interlocked(one, other, orders, self._actions)
-        return PairClearance((one, other), in_time, any_time, interlocked, least, at)
+            verdict = prover.prove(clearance, replace(meetings, until=np.inf))
+        return verdict, least, at
 
     def interlocked(
         self, one: str, other: str, orders: Orders, actions: Mapping[str, Sequence[Action]]
@@ -153,19 +192,39 @@ class StationProver:
             orders: of these actions.
             actions: of each robot.
         """
-        prover = self.prover(one, other)
         sizes = len(actions[one]) + 1, len(actions[other]) + 1
-        together = sections_mask(
-            orders.together(one, other, sizes),
-            (actions[one], actions[other]),
-            (lambda: prover.one.own_time, lambda: prover.other.own_time),
-            (self._lag(one), self._lag(other)),
-        )
-        clocks = Meetings.at_any_time().clocks
-        return prover.prove(self._station.clearance, Meetings(clocks, together=together))
+        reachable = orders.together(one, other, sizes)
+        clocks, wanted = Meetings.at_any_time().clocks, self._station.clearance
+        found = []
+        for prover, passes in self._variants(one, other):
+            doings = [
+                self._passed(name, actions[name]) if passing else actions[name]
+                for name, passing in zip((one, other), passes, strict=True)
+            ]
+            together = None
+            if doings[0] is not None and doings[1] is not None:
+                together = sections_mask(
+                    reachable,
+                    (doings[0], doings[1]),
+                    (_own_times(prover.one), _own_times(prover.other)),
+                    (prover.one.run.timing.lag, prover.other.run.timing.lag),
+                )
+            found.append(prover.prove(wanted, Meetings(clocks, together=together)))
+        return _worst(found)
 
-    def _lag(self, name: str) -> float:
-        return self._station.members[name].run.timing.lag
+    def _passed(self, name: str, actions: Sequence[Action]) -> Sequence[Action] | None:
+        """The same actions of a robot that passes through zones; None where they are others.
+
+        Then nothing is known of sections, and everything may be at once.
+        """
+        passing = self._station.members[name].passing
+        assert passing is not None
+        known = {(action.text, action.span) for action in actions}
+        made = [action for action in passing.actions if (action.text, action.span) in known]
+        alike = [(a.text, a.span, a.move) for a in made] == [
+            (a.text, a.span, a.move) for a in actions
+        ]
+        return made if alike else None
 
     def _sampled(
         self, prover: PairProver, schedules: tuple[Schedule, Schedule]
@@ -200,3 +259,14 @@ def _own(a: str, b: str, one: str, other: str) -> tuple[str, str] | None:
     """An allowed pair as parts of the one and the other."""
     (first, _, part), (second, _, piece) = a.partition("."), b.partition(".")
     return (part, piece) if (first, second) == (one, other) else None
+
+
+def _own_times(motion: RobotMotion) -> Callable[[], FloatArray]:
+    return lambda: motion.own_time
+
+
+def _worst(found: Iterable[PairVerdict]) -> PairVerdict:
+    """What holds of all: the first that is not proven, else what the least proves."""
+    verdicts = list(found)
+    left = [verdict for verdict in verdicts if not verdict.proven]
+    return left[0] if left else min(verdicts, key=lambda verdict: verdict.clearance)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,8 +12,28 @@ from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
 from ..program.world_zone import WorldZone
+from .actions import Action
 from .gates import Gate
 from .pace import ClockPace
+
+Driven = tuple[Run, tuple[Action, ...]]
+"""A program as driven, and what it does with signals."""
+
+
+@dataclass(frozen=True)
+class Passing:
+    """What a robot drives where it need not stop for waits behind zones.
+
+    Args:
+        moves: indices of the moves in whose zones it may pass.
+        drive: drives the program so that it passes through the zones of these moves.
+        run, actions: as it passes through all of them.
+    """
+
+    moves: tuple[int, ...]
+    drive: Callable[[Collection[int]], Driven]
+    run: Run
+    actions: tuple[Action, ...]
 
 
 @dataclass(frozen=True, repr=False)
@@ -28,6 +48,8 @@ class StationRobot:
         run: the program as driven.
         begins: s after the station's start at which its program begins.
         pace: at which its own time passes where others set it.
+        passing: what it drives where it passes through zones that waits stand behind; None where
+            there are none.
     """
 
     name: str
@@ -37,6 +59,7 @@ class StationRobot:
     run: Run
     begins: float = 0.0
     pace: ClockPace = field(default_factory=ClockPace.steady)
+    passing: Passing | None = None
 
     def __repr__(self) -> str:
         return in_line(

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError, InputError, Note
+from ...core.errors import FlybyError, InputError, MotionError, Note
 from ..read import SourceOptions, read_with
 from ..setup import Setup, setup_of_program, start_of
 from .names import check_names
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ...core.source.reading import Reading
     from ...core.source.text.files import SourceFile
     from ...core.station.actions import Action
-    from ...core.station.station import RobotStation, StationRobot
+    from ...core.station.station import Driven, Passing, RobotStation, StationRobot
     from ...core.station.station_file import MemberFile, StationFile
     from ...core.station.synchronised import IdOf
 
@@ -68,6 +68,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         actions[member.name] = with_zones(
             actions_of(made.run, words), file.zones, member.name, made.run
         )
+        members[member.name] = replace(made, passing=_passing(file, made, words))
         ids[member.name] = _ids(made, words)
         looked_at = _looked_at(file, member.name) - _zoned(file, member.name)
         for note in said:
@@ -217,6 +218,26 @@ def _check_axes(file: StationFile, member: StationRobot) -> None:
             )
 
 
+def _check_carriers(program: Program) -> None:
+    """No targets in a work object that something moves which is not followed.
+
+    Where it is when a robot drives there, and so the path, nobody knows: no clearance would be
+    proven of what is really driven.
+    """
+    for index, move in enumerate(program.moves):
+        unit = move.work_object.not_followed
+        if unit is not None:
+            where = "" if move.statement is None else f"{move.statement}: "
+            raise InputError(
+                f"{where}move {index + 1}: its target is in work object "
+                f"{move.work_object.name}, which {unit} moves, and {unit} is no axis of this "
+                "robot: paths in a frame that another robot or its task moves are not driven yet. "
+                f"If {unit} is a table, give it to this robot, as [external_axis.{unit}] of its "
+                "cell, with its angles in the targets' eax_a; if it is another robot, leave these "
+                "moves out of the programs of the station"
+            )
+
+
 def _ids(member: StationRobot, words: SignalWords | None) -> IdOf | None:
     """The ids by which a program's moves are made together with others'."""
     from ...core.source.reading import Reading
@@ -271,10 +292,35 @@ def _passed(
             if not isinstance(moves[action.move].zone, Fine):
                 where = "" if action.span is None else f"{action.span}: "
                 yield Note(
-                    f"{name}: {where}{action.text}: the move before it has a zone, and the robot "
-                    "is taken to stop there; a controller that finds the condition fulfilled in "
-                    "time passes through the zone: stop there (fine), so that what is proven holds"
+                    f"{name}: {where}{action.text}: the move before it has a zone: the robot is "
+                    "driven with a stop there, and a controller that finds the condition "
+                    "fulfilled in time passes through the zone; clearances are proven of both, "
+                    "times are those with the stop"
                 )
+
+
+def _passing(file: StationFile, member: StationRobot, words: SignalWords | None) -> Passing | None:
+    """What a robot drives that passes through zones which waits stand behind."""
+    from ...core.station.actions import actions_of
+    from ...core.station.passing import passing, waits_behind_zones
+    from ...core.station.station import Passing
+    from ...core.station.world_zones import with_zones
+
+    def drive(which: Collection[int]) -> Driven:
+        program = passing(member.program, words, which)
+        run = member.controller.run(program, start_of(member.program))
+        return run, with_zones(actions_of(run, words), file.zones, member.name, run)
+
+    moves = waits_behind_zones(member.program, words)
+    if not moves:
+        return None
+    try:
+        return Passing(moves, drive, *drive(moves))
+    except MotionError as error:
+        raise InputError(
+            f"{file.file}: robot.{member.name}: where it need not stop for a wait behind a zone: "
+            f"{error}"
+        ) from error
 
 
 def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]:
@@ -293,6 +339,7 @@ def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]
         )
         program: Program = read_with(member.program, source)
         setup = setup_of_program(program)
+        _check_carriers(program)
         controller = Controller(setup.vendor, setup.robot)
         refuse_faults(controller, program, start_of(program))
         run = controller.run(program, start_of(program))

@@ -97,7 +97,7 @@ class StationFeasibility:
         given: as it was given.
 
     Raises:
-        InputError: robots make moves together.
+        InputError: robots make moves together, or a wait stands behind a zone.
         MotionError: two robots are not proven to keep clear, or the station never ends.
     """
 
@@ -115,6 +115,14 @@ class StationFeasibility:
                 f"{', '.join(together)}: programs whose moves are made together with other robots' "
                 "are not improved yet"
             )
+        for name, member in station.members.items():
+            if member.passing is not None:
+                move = member.program.moves[member.passing.moves[0]]
+                raise InputError(
+                    f"{name}: {move.statement}: the move ends in a zone, and then the program "
+                    "waits for a signal: the robot stops there or passes through, and programs "
+                    "are improved where that is known: end the move at a stop (fine)"
+                )
         self._words, self._known, self._jitter = words, known, jitter
         self.given = self.state = self._state(station, None)
         self._kept: dict[Pair, _Keeping] = {}

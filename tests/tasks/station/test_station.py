@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import flyby
-from flyby.core.errors import FlybyError
+from flyby.core.errors import FlybyError, InputError
 from flyby.core.station.clearances import StationProver
 from flyby.drawing.station import draw_station
 
@@ -333,6 +333,23 @@ def test_statements_that_nobody_knows_are_no_interlock(write: Write) -> None:
     assert "one.mod:9" in note and "SetDO\\SDelay" in note
 
 
+def test_targets_in_a_frame_that_another_robot_moves_are_refused(write: Write) -> None:
+    """Taken to stand, they would be proven of a path that nobody drives."""
+    frames = "[[0,0,0],[1,0,0,0]],[[0,0,0],[1,0,0,0]]"
+    held = f'PERS wobjdata wHeld := [FALSE,FALSE,"ROB_2",{frames}]'
+    there = "[[900,0,1000],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+    move = f"MoveJ \\ID:=10, {there}, v100, fine, tool0 \\WObj:=wHeld"
+    programs = {
+        "one": ["go 0", "SyncMoveOn s1, all", move, "SyncMoveOff s2"],
+        "two": ["go 0", "SyncMoveOn s1, all", absolute(1, 10), "SyncMoveOff s2"],
+    }
+    file = write(programs)
+    module = file.parent / "one.mod"
+    module.write_text(module.read_text().replace("  PROC main", f"  {held};\n  PROC main"))
+    with pytest.raises(InputError, match=r"robot\.one: .*one\.mod:.*move 2: .*wHeld, which ROB_2"):
+        station(file)
+
+
 def absolute(k: int, name: int, zone: str = "fine") -> str:
     """A move to the K-th home that others make with it."""
     return f"MoveAbsJ \\ID:={name}, [{HOMES[k]},{UNUSED}], v1000, {zone}, tool0"
@@ -586,5 +603,5 @@ def test_what_controllers_may_do_otherwise_is_noted(write: Write) -> None:
     }
     made = station(write(programs, '[links]\n"one.doGo" = "two.diGo"\n'))
     notes = [str(note) for note in made.notes]
-    assert any("two.mod:8" in note and "stop there (fine)" in note for note in notes), notes
+    assert any("two.mod:8" in note and "passes through the zone" in note for note in notes), notes
     assert any("one.mod:8" in note and "comes to this meeting" in note for note in notes), notes

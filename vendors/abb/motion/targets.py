@@ -28,6 +28,7 @@ from ..values.records import (
     check_speed,
     load_value,
     metres,
+    standing,
     tool_value,
     work_object_value,
     zone_value,
@@ -130,18 +131,24 @@ class Converter:
                 "ufprog is FALSE, so a mechanical unit moves the work object, but ufmec names none",
                 expression.span,
             )
-        if not value[1] and not self._carries(value[2]):
+        followed = value[1] or self._carries(value[2])
+        if not followed:
             cell = cell_axis(value[2], self._robot)
             self._notes.once(
                 f"carrier of {name}",
-                f"work object {name} is moved by {value[2]} (a conveyor?), which the robot has "
-                f"not: it is taken to stand where it is declared{cell}",
+                f"work object {name} is moved by {value[2]}, which is no axis of this robot (a "
+                "conveyor, or a unit of another task): it is taken to stand where it is "
+                f"declared{cell}",
                 expression.span,
             )
-            value = (value[0], True, *value[2:])
+
+        def make(record: Record, name: str) -> WorkObject:
+            made = work_object_value(record, name)
+            return made if followed else standing(made)
+
         return self._cached(
             ("work object", name, value),
-            lambda: self._made_of(work_object_value, value, WOBJDATA, name, expression.span),
+            lambda: self._made_of(make, value, WOBJDATA, name, expression.span),
         )
 
     def _carries(self, unit: str) -> bool:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from ....core.errors import InputError
@@ -233,8 +234,13 @@ def work_object_value(record: Record, name: str) -> WorkObject:
     return WorkObject(name, pose_value(uframe), pose_value(oframe), robhold, moved_by)
 
 
+def standing(work_object: WorkObject) -> WorkObject:
+    """A work object that a unit moves which the robot has not, as it is declared."""
+    return replace(work_object, moved_by=None, not_followed=work_object.moved_by)
+
+
 def work_object_record(work_object: WorkObject) -> Record:
     """As `work_object_value` takes it."""
-    moved_by = work_object.moved_by
+    moved_by = work_object.moved_by or work_object.not_followed
     frames = (pose_record(work_object.user), pose_record(work_object.frame))
     return (work_object.robot_held, moved_by is None, moved_by or "", *frames)

@@ -1,0 +1,122 @@
+"""Waits behind a zone: a robot that finds its condition fulfilled in time does not stop there.
+
+Programs are driven with a stop at every wait. Where the move before one ends in a zone, a
+controller may pass through it, so that path is driven, too, and proofs are made of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+from ..dialect import SignalWords
+from ..program.move import Opaque, Wait
+from ..program.program import Program
+from ..program.signal import WaitSignal
+from ..program.zone import Fine
+from .actions import Action
+from .clock import StationClock, StationRun
+from .station import RobotStation
+
+_ROUNDS = 8
+
+
+class Passed(NamedTuple):
+    """A station whose robots pass through zones where what they wait for is there in time.
+
+    Args:
+        station: its robots as they are driven then.
+        actions: of these.
+        run: on one clock.
+    """
+
+    station: RobotStation
+    actions: dict[str, tuple[Action, ...]]
+    run: StationRun
+
+
+def waits_behind_zones(program: Program, words: SignalWords | None) -> tuple[int, ...]:
+    """Indices of the moves that end in a zone, and then nothing but a wait for signals stops."""
+    found: list[int] = []
+    if words is None:
+        return ()
+    for move, between in _between(program):
+        waits = [s for s in between if isinstance(s, Opaque) and _awaits(s, words)]
+        stops = any(
+            s.duration > 0.0 if isinstance(s, Wait) else s.stops for s in between if s not in waits
+        )
+        last = move == len(program.moves) - 1
+        if waits and not stops and not last and not isinstance(program.moves[move].zone, Fine):
+            found.append(move)
+    return tuple(found)
+
+
+def passing(program: Program, words: SignalWords | None, which: Collection[int]) -> Program:
+    """The program that does not stop for waits behind moves, given by their indices."""
+    assert words is not None
+    statements, move = [], -1
+    for statement in program.statements:
+        if isinstance(statement, Opaque):
+            if move in which and _awaits(statement, words):
+                statement = replace(statement, stops=False)
+        elif not isinstance(statement, Wait):
+            move += 1
+        statements.append(statement)
+    return replace(program, statements=tuple(statements))
+
+
+def passed_in_time(
+    station: RobotStation, actions: Mapping[str, tuple[Action, ...]]
+) -> Passed | None:
+    """The station in which robots pass through zones where what they wait for is there in time.
+
+    Args:
+        station: with its robots stopping everywhere.
+        actions: of these.
+
+    Returns:
+        None where no robot passes.
+    """
+    which = {
+        name: set(member.passing.moves)
+        for name, member in station.members.items()
+        if member.passing is not None
+    }
+    for _ in range(_ROUNDS):
+        members, doings = dict(station.members), dict(actions)
+        for name, moves in which.items():
+            known = members[name].passing
+            assert known is not None
+            if moves:
+                run, doings[name] = known.drive(moves)
+                members[name] = replace(members[name], run=run)
+        if not any(which.values()):
+            return None
+        made = replace(station, members=members)
+        clocked = StationClock(made, doings).run()
+        held = {
+            name: {s.action.move for s in clocked.schedules[name].waits if s.end > s.begin} & moves
+            for name, moves in which.items()
+        }
+        if not any(held.values()):
+            return Passed(made, doings, clocked)
+        for name, moves in held.items():
+            which[name] -= moves
+    return Passed(made, doings, clocked)
+
+
+def _between(program: Program) -> list[tuple[int, list[Wait | Opaque]]]:
+    """Indices of moves, and what stands behind each before the next."""
+    found: list[tuple[int, list[Wait | Opaque]]] = []
+    for statement in program.statements:
+        if isinstance(statement, Wait | Opaque):
+            if found:
+                found[-1][1].append(statement)
+        else:
+            found.append((len(found), []))
+    return found
+
+
+def _awaits(statement: Opaque, words: SignalWords) -> bool:
+    return isinstance(words.read(statement.text), WaitSignal)

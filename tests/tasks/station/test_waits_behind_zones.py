@@ -1,0 +1,70 @@
+"""Waits behind a zone: a robot stops there or passes through, and proofs hold for both."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.errors import InputError
+
+from .stations import UNUSED, module
+
+BESIDE = 795.0
+"""mm from the one to the other, that points between where the one stops and where it passes."""
+
+
+def to(q: tuple[float, ...], zone: str = "fine") -> str:
+    return f"MoveAbsJ [[{','.join(map(str, q))}],{UNUSED}], v1000, {zone}, tool0"
+
+
+def corner(folder: Path, zone: str, gap: float = BESIDE) -> Path:
+    """One draws its arm in to a corner, waits there and stretches out again, beside two's hand."""
+    out, drawn, on = (0, 40, -20, 0, 0, 0), (40, -30, 30, 0, 0, 0), (80, 40, -20, 0, 0, 0)
+    one = [to(out), to(drawn, zone), "WaitDI diGo,1", to(on)]
+    two = [to((0, 20, -20, 0, 0, 0)), "SetDO doGo,1", to((0, 20, -20, 0, 0, 20))]
+    (folder / "one.mod").write_text(module("one", one))
+    (folder / "two.mod").write_text(module("two", two))
+    way = math.radians(40)
+    x, y, half = gap * math.cos(way), gap * math.sin(way), 0.5 * (way + math.pi)
+    turned = f"[{math.cos(half):.9f}, 0, 0, {math.sin(half):.9f}]"
+    robot = 'robot = "abb/irb120-3-058"\n'
+    (folder / "one.toml").write_text(robot)
+    base = f"base = {{ xyz_mm = [{x:.3f}, {y:.3f}, 0], quat_wxyz = {turned} }}\n"
+    (folder / "two.toml").write_text(robot + base)
+    members = "".join(
+        f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.mod"\n' for name in ("one", "two")
+    )
+    file = folder / "station.toml"
+    file.write_text(members + '[links]\n"two.doGo" = "one.diGo"\n')
+    return file
+
+
+def test_both_paths_are_proven(tmp_path: Path) -> None:
+    """Where the robot stops it keeps clear; through the zone it would meet the other's hand."""
+    (stopped,) = flyby.station(corner(tmp_path, "fine")).clearances
+    assert stopped.any_time.proven and stopped.in_time.proven
+    made = flyby.station(corner(tmp_path, "z200"))
+    (passed,) = made.clearances
+    assert not passed.any_time.proven and not passed.in_time.proven and not passed.safe
+    assert passed.least < stopped.least
+    assert any("clearances are proven of both" in str(note) for note in made.notes)
+    (apart,) = flyby.station(corner(tmp_path, "z200", 1200.0)).clearances
+    assert apart.any_time.proven and apart.in_time.proven
+
+
+def test_what_is_too_late_is_not_passed(tmp_path: Path) -> None:
+    """In time there is only what the signals' times let happen; at any time there is all."""
+    file = corner(tmp_path, "z200")
+    file.write_text(
+        file.read_text().replace('= "one.diGo"', '= { to = "one.diGo", delay_ms = 9000 }')
+    )
+    (late,) = flyby.station(file).clearances
+    assert late.in_time.proven and not late.any_time.proven
+
+
+def test_programs_are_improved_where_it_is_known_what_they_do(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"one: .*one\.mod:\d+.*end the move at a stop"):
+        flyby.station_zones(corner(tmp_path, "z200", 1200.0))
