@@ -106,8 +106,11 @@ def _programs_alone(names: Sequence[str], registry: Registry) -> _Found | None:
     programs = _programs(names, registry)
     if len(names) == 1:
         return None
+    sure = {n: of for n, of in programs.items() if PurePosixPath(n).suffix.casefold() not in _TEXTS}
     for vendor in registry.vendors.values():
-        if vendor.backups is None or not all(vendor.name in of for of in programs.values()):
+        if vendor.backups is None or not all(
+            vendor.name in of for of in (sure or programs).values()
+        ):
             continue
         opener = vendor.backups()
         root = opener.programs_in(names) if programs else None

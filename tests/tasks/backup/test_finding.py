@@ -105,6 +105,23 @@ def test_the_one_furthest_out_counts(tmp_path: Path) -> None:
     assert opened(folder, TWO).vendor == "one"
 
 
+def test_a_text_beside_programs_is_none_of_another_vendor(tmp_path: Path) -> None:
+    class Loose(Marked):
+        def programs_in(self, names: Sequence[str]) -> str | None:
+            return ""
+
+        def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
+            return Backup(source, root, self.vendor, "controller", "1", (), ())
+
+    one = replace(find_vendor("abb"), name="one", backups=lambda: Loose("one", "mark.txt"))
+    other = replace(find_vendor("ur"), name="other", backups=lambda: Marked("other", "sign.txt"))
+    registry = Registry({"other": other, "one": one})
+    folder = _made(tmp_path, "a.mod", "README.txt", "HOME/log.txt")
+    assert opened(folder, registry).vendor == "one"
+    _made(tmp_path, "b.script")
+    assert find_backup(folder, registry) is None
+
+
 def test_what_is_no_backup_says_who_would_know_one(tmp_path: Path) -> None:
     folder = _made(tmp_path, "README.md")
     assert find_backup(folder, TWO) is None
