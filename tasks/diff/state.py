@@ -118,7 +118,10 @@ def _of_program(path: Path, options: SourceOptions) -> StationState:
         routines[name] = _read(by_name) if undriven else _driven(by_name)
     texts = {path.name: _text(path)} if path.is_file() else {}
     for routine in routines.values():
-        texts |= _texts(routine.program, path.parent if path.is_file() else path)
+        if path.is_file():
+            texts |= _texts(routine.program, path.parent)
+        else:
+            texts |= _texts(routine.program, path, beside=True)
     return StationState(path, routines, texts=texts, undriven=undriven)
 
 
@@ -206,11 +209,14 @@ def _driven(read: Callable[[], Program]) -> Routine:
         return replace(routine, error=str(error))
 
 
-def _texts(program: Program | None, folder: Path) -> dict[str, str]:
+def _texts(program: Program | None, folder: Path, beside: bool = False) -> dict[str, str]:
     """The source files of a program by their names below a folder.
 
     They are its own and those with moves that are driven: what else stands beside a program is
     read by its reader, and may be another program's.
+
+    Args:
+        beside: whether what stands beside it counts, as the user has named the whole folder.
     """
     from ...core.source.reading import Reading
 
@@ -220,10 +226,10 @@ def _texts(program: Program | None, folder: Path) -> dict[str, str]:
     driven = {move.statement.file for move in program.moves if move.statement is not None}
     found = {}
     for name, file in reading.files.items():
-        if name not in driven | {reading.main}:
-            continue
         path = Path(name)
         below = path.is_relative_to(folder)
+        if name not in driven | {reading.main} and not (beside and below):
+            continue
         found[path.relative_to(folder).as_posix() if below else path.name] = file.text
     return found
 

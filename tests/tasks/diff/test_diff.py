@@ -105,6 +105,17 @@ def test_folders_of_program_trees_are_driven_and_compared(build: Build, tmp_path
     assert [(file.name, file.added) for file in found.files] == [("job.urp", 1)]
 
 
+def test_what_stands_beside_a_program_counts_in_folders_that_are_named(tmp_path: Path) -> None:
+    for name, x in (("a", 900), ("b", 905)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "Main.mod").write_text(MAIN, "ascii")
+        data = f"MODULE Data\nCONST num nX:={x};\nENDMODULE\n"
+        (tmp_path / name / "Data.mod").write_text(data, "ascii")
+    found = flyby.diff(tmp_path / "a", tmp_path / "b", robot=ROBOT)
+    assert [(file.name, file.added, file.removed) for file in found.files] == [("Data.mod", 1, 1)]
+    assert not flyby.diff(tmp_path / "a/Main.mod", tmp_path / "b/Main.mod", robot=ROBOT).differs
+
+
 def test_what_cannot_be_read_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no such file"):
         flyby.diff(tmp_path / "a.mod", tmp_path / "b.mod", robot=ROBOT)
