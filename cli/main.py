@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 from collections.abc import Iterator, Mapping
 from importlib import import_module
@@ -16,6 +17,7 @@ from ..core.door import command_line
 from ..core.errors import FlybyError, OptionError
 from ..tasks.options.shell import SHELL
 from .output.console import fail, warn
+from .parameters import convert_plainly
 
 COMMANDS = {
     "emulate": "emulate",
@@ -45,6 +47,8 @@ COMMANDS = {
 """The module of each command, in the order of the help."""
 LONGEST_NAME = 300
 """Characters of a file's name that are shown."""
+_BETWEEN_LOOKS = 500_000
+"""Objects that are made before Python looks for garbage; 700 by itself."""
 NUMBERS_MAY_BE_NEGATIVE = ("fk", "ik")
 """Commands that take words which begin with a minus for numbers."""
 
@@ -56,6 +60,7 @@ class Command(TyperCommand):
         """All parameters."""
         found = super().get_params(ctx)
         for parameter in found:
+            convert_plainly(parameter)
             if getattr(parameter, "is_flag", False):
                 parameter.metavar = ""
         return found
@@ -96,6 +101,13 @@ class Commands(TyperGroup):
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)
         self.commands = _Imported()  # type: ignore[assignment]
+
+    def get_params(self, ctx: Any) -> Any:
+        """All parameters."""
+        found = super().get_params(ctx)
+        for parameter in found:
+            convert_plainly(parameter)
+        return found
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
@@ -152,4 +164,7 @@ class _Warnings(logging.Handler):
 
 def main() -> None:
     """Run the command line."""
+    # Imports make many objects and no garbage: to look for it some hundred times is a tenth of a
+    # short command.
+    gc.set_threshold(_BETWEEN_LOOKS)
     app(prog_name="flyby")

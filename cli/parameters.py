@@ -1,13 +1,13 @@
-"""Parameters of commands made of the options of tasks."""
+"""Parameters of commands: made of the options of tasks, and how words become their values."""
 
 from __future__ import annotations
 
 import inspect
 import re
 from collections.abc import Callable
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, get_args, get_type_hints
 
 import typer
 
@@ -16,6 +16,8 @@ from ..tasks.options.entries import Entry, TaskOptions, defaults, entries, flag
 from ..tasks.options.shell import SHELL
 
 _DIGITS = 12
+_AS_TYPED = (str, Path)
+"""Kinds of values that any word will do for."""
 _SEVERAL = 3
 """Options of a class from which on help shows them apart."""
 
@@ -94,6 +96,38 @@ def _value(kind: type[TaskOptions], name: str, typed: Any) -> Any:
     if entry.kind is float and typed is not None and entry.scale.factor != 1.0:
         return entry.scale.factor * typed
     return typed
+
+
+def convert_plainly(parameter: Any) -> None:
+    """Have a parameter convert texts, paths and what was not given by itself.
+
+    To import pydantic, by which typer converts words, and to have it make a converter of each
+    option takes a twentieth of a second, whatever was typed; most of that is names of files.
+    Numbers and choices are left to typer, which knows what to say of a wrong one.
+
+    Args:
+        parameter: of a typer command; of a version that states no types it stays as it is.
+    """
+    kind = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
+    if kind is not None and "process_value" not in vars(parameter):
+        parameter.process_value = partial(_processed, parameter, kind, parameter.process_value)
+
+
+def _processed(parameter: Any, kind: Any, usual: Any, context: Any, value: Any) -> Any:
+    """The value of a parameter from what was typed, or its default."""
+    if value is None and not parameter.required:
+        none = () if parameter.multiple or parameter.nargs == -1 else None
+        known = parameter.callback
+        return none if known is None else known(context, parameter, none)
+    if parameter.callback is None:
+        each = get_args(kind)
+        if kind in _AS_TYPED and isinstance(value, str):
+            return kind(value)
+        if parameter.multiple and each in [(one,) for one in _AS_TYPED]:
+            return [each[0](one) for one in value]
+        if type(value) is kind:
+            return value
+    return usual(context, value)
 
 
 ProgramFile = Annotated[Path, typer.Argument(help="Program file in its vendor's language.")]

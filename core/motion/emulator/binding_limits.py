@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 
 from ...program.speed import Speed
 from ..timing.between_samples import BETWEEN, row_between
@@ -45,9 +46,11 @@ def limit_seconds(run: Run, axis_names: Sequence[str]) -> list[dict[str, float]]
     timing = run.timing
     spent: list[dict[str, float]] = [{} for _ in run.path.route.moves]
     durations = timing.end - timing.begin
-    for segment, name, duration in zip(timing.interval_segments, names, durations, strict=True):
-        owner = spent[int(segment)]
-        owner[name] = owner.get(name, 0.0) + float(duration)
+    for segment, name, duration in zip(
+        timing.interval_segments.tolist(), names, durations.tolist(), strict=True
+    ):
+        owner = spent[segment]
+        owner[name] = owner.get(name, 0.0) + duration
     return spent
 
 
@@ -58,18 +61,23 @@ def limit_shares(run: Run, axis_names: Sequence[str]) -> list[tuple[LimitShare, 
 
 def interval_limits(run: Run, axis_names: Sequence[str]) -> list[str]:
     """Name of the limit that binds in each of the K intervals of a run's path."""
-    stamp = run.timing.stamp
+    stamp, binding = run.timing.stamp, run.timing.path_limits.binding
     rows = row_names(run.timing.path_limits, axis_names)
-    names: list[str] = [STOP] * len(stamp.limit)
+    owners, limits = run.timing.interval_segments.tolist(), stamp.limit.tolist()
+    # Intervals of one move are held by few limits.
+    acceleration = cache(partial(_acceleration, run, rows))
+    velocity = cache(partial(_velocity, run, axis_names))
+    names: list[str] = [STOP] * len(limits)
     # An interval that is cut short by what follows is held by the limit of what follows.
     for k in range(len(names) - 1, -1, -1):
-        code = int(stamp.limit[k])
+        code = limits[k]
         if code >= 0:
-            names[k] = _acceleration(run, k, rows, stamp.half_plane(code).row)
+            names[k] = acceleration(owners[k], stamp.half_plane(code).row)
         elif code == NEXT and k + 1 < len(names):
             names[k] = names[k + 1]
         elif code in (CEILING, NEXT):
-            names[k] = _velocity(run, k, axis_names)
+            _, row, owner = binding[k].tolist()
+            names[k] = velocity(owner, row)
     return names
 
 
@@ -83,9 +91,8 @@ def row_names(limits: PathLimits, axis_names: Sequence[str]) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:
-    """The velocity limit that is the ceiling at a knot."""
-    _, row, owner = (int(i) for i in run.timing.path_limits.binding[knot])
+def _velocity(run: Run, axis_names: Sequence[str], owner: int, row: int) -> str:
+    """The velocity limit that is the ceiling at a knot, by segment and row or code."""
     if row in (ZONE, LEAST_TIME, TIMED):
         return CORNER
     if row == CENTRIPETAL:
@@ -103,10 +110,9 @@ def _velocity(run: Run, knot: int, axis_names: Sequence[str]) -> str:
     return f"{axis_names[row]} velocity" if row < len(axis_names) else "TCP speed"
 
 
-def _acceleration(run: Run, interval: int, rows: Sequence[str], row: int) -> str:
-    """The limit of acceleration or torque that binds in an interval."""
+def _acceleration(run: Run, rows: Sequence[str], owner: int, row: int) -> str:
+    """The limit of acceleration or torque that binds in an interval, by segment and row."""
     limited = run.timing.path_limits.limited
-    owner = int(run.timing.interval_segments[interval])
     speed = run.program.moves[run.path.route.moves[owner]].speed
     source: tuple[str, float] | None = ("joint_acceleration_fraction", 1.0)  # of torques, too
     if row < len(limited):

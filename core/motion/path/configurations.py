@@ -268,7 +268,7 @@ class ConfigurationFinder:
         if self.redundant is not None and all(name is None for name in labels):
             return np.asarray(options[np.argmin(distance)])
         admitted = [name is not None and wanted.admits(name) for name in labels]
-        misses = np.where(admitted, self._misses(wanted, options), math.inf)
+        misses = np.where(admitted, _mismatches(wanted, labels), math.inf)
         best = min(range(len(options)), key=lambda k: (misses[k], distance[k]))
         alike = self._alike(wanted, labels, misses, options, best)
         if alike and misses[best] > _MATCH:
@@ -315,8 +315,7 @@ class ConfigurationFinder:
 
     def _misses(self, wanted: Configuration, options: FloatArray) -> FloatArray:
         """Mismatches (K,) of configurations (K, N); infinite where the vendor has no label."""
-        labels = [self._label(self._robot, q) for q in options]
-        return np.array([math.inf if name is None else wanted.mismatch(name) for name in labels])
+        return _mismatches(wanted, [self._label(self._robot, q) for q in options])
 
     def check_arrival(self, move: Move, index: int, arrived: FloatArray) -> None:
         """Hold the end of a move of the TCP against its programmed configuration.
@@ -408,3 +407,8 @@ class ConfigurationFinder:
         carrier = np.eye(4)
         pose(assemble([*stages, work_object.pose]), q, carrier[:3, :3], carrier[:3, 3])
         return Pose.from_matrix(carrier) @ target @ tool.tcp.inverse()
+
+
+def _mismatches(wanted: Configuration, labels: Sequence[Configuration | None]) -> FloatArray:
+    """Mismatches (K,) of labels; infinite where there is none."""
+    return np.array([math.inf if name is None else wanted.mismatch(name) for name in labels])
