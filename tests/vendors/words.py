@@ -13,7 +13,7 @@ from flyby.core.program.tool import FLANGE, Load, Tool
 from flyby.core.program.zone import Zone
 from flyby.testing.checks.subject import Subject
 from flyby.testing.strategies import tools
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 HERE = Path(__file__).parent
 FLOATS = st.floats(0.01, 5.0)

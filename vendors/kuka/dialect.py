@@ -20,7 +20,7 @@ from ...core.dialect import (
 from ...core.program.zone import Angle, ContourFraction, Radius
 from .settings_in_force import unsaid
 from .signals import SIGNALS
-from .values.zone_kinds import C_VEL
+from .zone_kinds import C_VEL
 
 _NAME = r"[^\W\d][\w$]*"
 _DECLARED = rf"{_NAME}(?:[ \t]*\[[^\]\r\n]*\])?"

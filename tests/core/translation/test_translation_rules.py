@@ -30,7 +30,7 @@ from flyby.core.translation.emulation import Party
 from flyby.core.translation.half_turns import decided
 from flyby.core.translation.losses import Losses
 from flyby.core.translation.translate import translate
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 
 def side(name):

@@ -32,7 +32,7 @@ from flyby.vendors.abb.write.numbers import number
 from flyby.vendors.abb.write.operands import predefined_within
 from flyby.vendors.abb.write.options import RapidOptions, ZoneStyle
 from flyby.vendors.abb.write.writer import write
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 OPTIONS = RapidOptions()
 DOWN = (0.0, 0.0, 1.0, 0.0)

@@ -25,7 +25,7 @@ from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.vendors.kuka.motion.arcs import beyond
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.kuka.values.angles import quaternion
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 SET = """$VEL_AXIS[1]=50
 FOR i=1 TO 6

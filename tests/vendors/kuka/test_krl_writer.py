@@ -27,9 +27,9 @@ from flyby.vendors.abb.motion.configuration import AbbConfiguration
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
 from flyby.vendors.kuka.syntax.names import MAX_NAME, NAME_RULES
 from flyby.vendors.kuka.values.angles import angles, quaternion, written_angles
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
 from flyby.vendors.kuka.write.numbers import number
 from flyby.vendors.kuka.write.writer import write
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 KUKA = find_vendor("kuka")
 ROBOT = KUKA.robot("kr30-3")

@@ -23,7 +23,7 @@ from flyby.core.robot.inertia import carried_inertia
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.source.text.names import Names
 from flyby.core.spatial.pose import Pose
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 from flyby.vendors.ur.motion.configuration import UrConfiguration
 from flyby.vendors.ur.syntax.names import NAME_RULES, RESERVED
 from flyby.vendors.ur.write.formatting import number

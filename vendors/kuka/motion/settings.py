@@ -34,7 +34,7 @@ from ..values.values import (
     left_open,
     supposed,
 )
-from ..values.zone_kinds import C_VEL
+from ..zone_kinds import C_VEL
 
 Note = Callable[[str, str, Span], None]
 _FULL = 100.0

@@ -13,6 +13,7 @@ from ....core.source.execution.scopes import unknown_name
 from ..motion.bas import Basis
 from ..motion.inline_forms import Function
 from ..syntax.tree import Call, Invoke, Name
+from ..values.answers import answered
 from ..values.data import Data
 from ..values.evaluator import Evaluator, brought_by
 from ..values.expected import EXPECTED
@@ -121,7 +122,7 @@ class Calls:
         text = self._data.text(datum.span) if datum.path else datum.text
         answer = self._course.value(text, about)
         if answer is not None:
-            value = self._evaluator.names.answered(answer)
+            value = answered(answer)
             self._evaluator.assign(datum, value, scope, call.span)
             return
         unknown = Unknown(f"what {call.text} gave {text}", call.span, key=text)

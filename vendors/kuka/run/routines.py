@@ -10,9 +10,8 @@ from ....core.source.execution.transcript import Transcript
 from ....core.source.text.arguments import wrong_count
 from ..syntax.tree import Call, Name, Routine
 from ..values.data import Data
-from ..values.elements import Path
 from ..values.evaluator import Evaluator
-from ..values.scope import Module, Scope, Variable
+from ..values.scope import Module, Path, Scope, Variable
 from ..values.types import KrlTypeError, convert
 from ..values.values import Pending, Value, copied
 from .exits import Jump, Left, Returned

@@ -8,9 +8,9 @@ from itertools import pairwise
 from ....core.errors import SourceError, Span
 from ..syntax.tree import Name
 from .data import Data
-from .elements import Names, Path, spelled
+from .elements import Names
 from .predefined import OUTPUTS
-from .scope import Scope, Variable
+from .scope import Path, Scope, Variable, spelled
 from .types import no_component
 from .values import Array, Pending, Struct, Unknown, Value, copied, shown
 

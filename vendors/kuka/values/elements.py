@@ -5,26 +5,25 @@ What nothing sets is answered by the user, or is an `Unknown`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from ....core.errors import LeftOpenError, SourceError, Span
-from ....core.program.question import Answer, QuestionKind
-from ....core.source.execution.answers import About, Course, Fields
+from ....core.program.question import QuestionKind
+from ....core.source.execution.answers import Course
 from ....core.source.execution.suppose import is_open
 from ..syntax.tree import Expression, Name
 from .advance_run import AdvanceRun
+from .answers import DatumAnswers, answered
 from .data import Data
 from .expected import AXIS_NAMES, EXPECTED
 from .frames import null_frame
 from .predefined import NEVER_KNOWN, OUTPUTS, POSITION, STOPS_WHEN_READ
-from .scope import Scope, Variable
-from .types import FRAME_FIELDS, PREDEFINED, KrlTypeError, convert, no_component
+from .scope import Path, Scope, Variable, spelled
+from .types import KrlTypeError, convert, no_component
 from .values import (
     Array,
-    Choice,
     Pending,
     Struct,
     Unknown,
@@ -37,7 +36,6 @@ from .values import (
 )
 
 Position = Callable[[str, Span], Value]
-Path = tuple[str | tuple[int, ...], ...]
 _LONGEST_ARRAY = 100_000
 FRAMES = frozenset({"tool_data", "base_data", "$tool_data", "$base_data"})
 """Tables whose items are frames of zeros where nobody sets them."""
@@ -67,24 +65,11 @@ class Expressions(Protocol):
         """A known number; ``use`` says in messages what needs it."""
 
 
-_TRUTHS = frozenset({"$in", "$out", "$flag", "$cycflag"})
-_NUMBER = r"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?"
-_STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+{_NUMBER})*\s*\}}")
-"""``{X 700,Y 0,Z 500}``"""
-
-
 def _told(axes: Value) -> str:
     """The axis values of the arm, as KRL writes them."""
     fields = axes.fields if isinstance(axes, Struct) else {}
     names = [name for name in AXIS_NAMES if name.lower() in fields]
     return ", ".join(f"{name} {fields[name.lower()]:g}" for name in names)
-
-
-def kind_of(name: str) -> QuestionKind:
-    """What a system variable tells, by its name in lower case."""
-    if re.fullmatch(r"\$(rob_)?timer(_\w+)?|\$date|\$sen_\w+|\$torque\w*|\$curr_\w+", name):
-        return QuestionKind.SENSOR
-    return QuestionKind.SIGNAL
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +86,10 @@ class Names:
     course: Course
     position: Position
     advance: AdvanceRun
+    answers: DatumAnswers = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "answers", DatumAnswers(self.course, self.data))
 
     def value(self, node: Name, scope: Scope) -> Value:
         """The value of a datum or of a part of it; not known where an index is not.
@@ -121,19 +110,19 @@ class Names:
         if node.name in OUTPUTS:
             return self._output(node, scope)
         if node.name in NEVER_KNOWN:
-            return self._undeclared(node, self.path(node, scope))
+            return self.answers.undeclared(node, self.path(node, scope))
         cell = self.data.find(node.name, scope)
         if cell is None and position is not None:
             return self._of_position(node, scope, position)
         if cell is None:
-            return self._undeclared(node, self.path(node, scope))
+            return self.answers.undeclared(node, self.path(node, scope))
         if cell.signal is not None:
             return self._signal(node, cell, scope)
         path = self.path(node, scope) if node.path else ()
         value = self.settled(cell)
         for step in path:
             if isinstance(value, Unknown):
-                self._used_with(value, step)
+                self.answers.used_with(value, step)
                 value = supposed_part(value, step)
             if value is None or isinstance(value, Unknown):
                 break
@@ -141,12 +130,12 @@ class Names:
         if is_open(cell) and cell.found is not None and not path:
             value = self._found(node, cell.found) or value
         if is_open(cell):
-            open_ = self._undeclared(node, path, f", which {cell.writer} writes")
+            open_ = self.answers.undeclared(node, path, f", which {cell.writer} writes")
             return replace(open_, held=value) if isinstance(open_, Unknown) else open_
         if value is None or isinstance(value, Unknown):
             unset = value is None and position is None
             kind = QuestionKind.DATUM if unset else None
-            answered = self._answer(node, path, kind, cell.type if not path else "")
+            answered = self.answers.answer(node, path, kind, cell.type if not path else "")
             if answered is not None:
                 return answered
             if isinstance(value, Unknown):
@@ -159,21 +148,9 @@ class Names:
             return self._home(node, cell, value)
         return value
 
-    def _used_with(self, value: Unknown, step: str | tuple[int, ...]) -> None:
-        """A component of what nobody says is used: so it is a structure that is asked for."""
-        whole = value.key.endswith(")") or "." not in value.key
-        if not isinstance(step, str) or not value.key or not whole:
-            return
-        if step in FRAME_FIELDS:
-            self.course.used_as(value.key, *EXPECTED["frame"])
-        elif step.upper() in AXIS_NAMES:
-            self.course.used_as(value.key, *EXPECTED["axis"])
-        else:
-            self.course.used_with(value.key, step.upper())
-
     def _home(self, node: Name, cell: Variable, shipped: Value) -> Value:
         """A home that no file at hand says: the user's answer, or KUKA's own, with a note."""
-        answer = self._answer(node, (), QuestionKind.DATUM, cell.type)
+        answer = self.answers.answer(node, (), QuestionKind.DATUM, cell.type)
         if answer is not None:
             return self.converted(answer, cell.type, cell.name, False, node.span)
         self.data.note(
@@ -190,7 +167,7 @@ class Names:
 
     def _of_position(self, node: Name, scope: Scope, kind: str) -> Value:
         path = self.path(node, scope)
-        answer = self._answer(node, path)
+        answer = self.answers.answer(node, path)
         if answer is not None:
             return answer
         value = self.position(kind, node.span)
@@ -210,7 +187,7 @@ class Names:
         held = None
         if not self.course.changing(spelled(node.text, path)):
             held = self.data.outputs.value(spelled(OUTPUTS[node.name], path))
-        return self._undeclared(node, path) if held is None else held
+        return self.answers.undeclared(node, path) if held is None else held
 
     def _signal(self, node: Name, cell: Variable, scope: Scope) -> Value:
         """A ``SIGNAL``: an output that the program has set; answered by its own name, or by those
@@ -224,7 +201,7 @@ class Names:
             value = self._whole(first, last, scope, self.data.outputs.value)
         if value is None:
             wide = last is not None
-            value = self._answer(node, (), QuestionKind.SIGNAL, "int" if wide else "bool")
+            value = self.answers.answer(node, (), QuestionKind.SIGNAL, "int" if wide else "bool")
         if value is None:
             value = self._whole(first, last, scope, self._bit(first))
         if value is None:
@@ -233,7 +210,7 @@ class Names:
 
     def _bit(self, first: Name) -> Callable[[str], Value | None]:
         """What the user answers to one of the inputs or outputs of a signal."""
-        return lambda place: self._answer(Name(first.span, first.name, place), ())
+        return lambda place: self.answers.answer(Name(first.span, first.name, place), ())
 
     def _whole(
         self, first: Name, last: Name | None, scope: Scope, bit: Callable[[str], Value | None]
@@ -316,7 +293,7 @@ class Names:
         """An item of ``TOOL_DATA`` or ``BASE_DATA`` that no file sets: the user's answer, or
         zeros."""
         told = self.course.value(label)
-        answer = None if told is None else self.answered(told)
+        answer = None if told is None else answered(told)
         if not isinstance(answer, Struct):
             return null_frame(label, shipped=True)
         return Struct("frame", {**null_frame().fields, **answer.fields}, label)
@@ -392,77 +369,9 @@ class Names:
             made.shipped = shipped
         return made
 
-    def _answer(
-        self, node: Name, path: Path, kind: QuestionKind | None = None, type_: str = ""
-    ) -> Value | None:
-        """The user's answer to a datum or a part of it.
-
-        Args:
-            kind: what is asked for; None for what comes of something else that is.
-            type_: of the datum, lower case, as far as it is known.
-        """
-        about = None if kind is None else About(node.span, kind, *EXPECTED.get(type_, (type_,)))
-        answer = self.course.value(spelled(node.text, path), about)
-        return None if answer is None else self.answered(answer)
-
-    def answered(self, answer: Answer) -> Value:
-        if isinstance(answer, Fields):
-            return Struct("", {name.lower(): self.answered(part) for name, part in answer})
-        if isinstance(answer, str) and _STRUCTURE.fullmatch(answer):
-            parts = (part.split() for part in answer.strip("{} ").split(","))
-            return Struct("", {name.lower(): float(number) for name, number in parts})
-        if isinstance(answer, str):
-            return Choice(answer[1:].lower()) if answer.startswith("#") else answer
-        if isinstance(answer, tuple):
-            values = [self.answered(part) for part in answer]
-            names = list(PREDEFINED["e6pos"])
-            return Struct("", dict(zip(names, values, strict=False)))
-        if isinstance(answer, float) and answer.is_integer() and abs(answer) < 2**31:
-            return int(answer)
-        return answer
-
-    def _undeclared(self, node: Name, path: Path, why: str | None = None) -> Value:
-        """The value of what nothing declares, or others write: an answer, or not known."""
-        system = self.data.is_system(node.name)
-        kind = kind_of(node.name) if system or node.name in OUTPUTS else QuestionKind.DATUM
-        truths = system and node.name in _TRUTHS
-        if path and path[-1] in ("x", "y", "z", "a", "b", "c"):
-            self.course.used_as(spelled(node.text, path[:-1]), *EXPECTED["frame"])
-        if path and self.course.lasting(spelled(node.text, path)) is None:
-            part = self._part_of_answer(node, path)
-            if part is not None:
-                return part
-        answer = self._answer(node, path, kind, "bool" if truths else "")
-        if answer is not None:
-            return answer
-        if why is None:
-            why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
-        text = spelled(node.text, path)
-        return Unknown(f"the value of {text}{why}", node.span, key=text)
-
-    def _part_of_answer(self, node: Name, path: Path) -> Value | None:
-        """A part of what the user answers as a whole; None if it is not in an answer."""
-        for cut in reversed(range(len(path))):
-            answer = self.course.lasting(spelled(node.text, path[:cut]))
-            if answer is None:
-                continue
-            value: Value | None = self.answered(answer)
-            for step in path[cut:]:
-                fields = value.fields if isinstance(value, Struct) else {}
-                value = fields.get(step) if isinstance(step, str) else None
-            return value
-        return None
-
 
 def supposed_part(value: Unknown, step: str | tuple[int, ...]) -> Unknown:
     """A component of what is not known."""
     held = supposed(value)
     part = held.fields.get(step) if isinstance(held, Struct) and isinstance(step, str) else None
     return replace(value, here=None, held=part)
-
-
-def spelled(text: str, path: Path) -> str:
-    """A datum with its evaluated indices, as ``TOOL_DATA[1].X``."""
-    for step in path:
-        text += f".{step.upper()}" if isinstance(step, str) else f"[{','.join(map(str, step))}]"
-    return text

@@ -14,6 +14,7 @@ from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.scopes import unknown_name
 from ..syntax import tree
 from .advance_run import AdvanceRun
+from .answers import answered
 from .assignments import Assignment
 from .data import Data
 from .elements import Names, Position
@@ -252,7 +253,7 @@ class Evaluator:
         text = self.data.text(call.span)
         answer = self.course.value(text, about)
         if answer is not None:
-            return self.names.answered(answer)
+            return answered(answer)
         return Unknown(f"the value of {call.text}()", call.span, key=text)
 
     def undeclared(self, node: tree.Name, scope: Scope, kind: str) -> LeftOpenError:

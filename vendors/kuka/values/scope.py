@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 from ..syntax.tree import DataList, Name, Routine
 from .values import Pending, Value
 
+Path = tuple[str | tuple[int, ...], ...]
+"""Components, lower case, and evaluated indices of a part of a datum."""
+
 
 @dataclass(eq=False, slots=True)
 class Variable:
@@ -70,3 +73,10 @@ class Scope:
     module: Module
     cells: dict[str, Variable] = field(default_factory=dict)
     returns: str | None = None
+
+
+def spelled(text: str, path: Path) -> str:
+    """A datum with its evaluated indices, as ``TOOL_DATA[1].X``."""
+    for step in path:
+        text += f".{step.upper()}" if isinstance(step, str) else f"[{','.join(map(str, step))}]"
+    return text

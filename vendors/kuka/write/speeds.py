@@ -15,7 +15,7 @@ from ....core.program.speed import Speed
 from ....core.program.zone import Angle, ContourFraction, Fine, Radius, VendorZone, Zone, zone_word
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
-from ..values.zone_kinds import C_VEL
+from ..zone_kinds import C_VEL
 from .formatting import MM
 from .numbers import number
 

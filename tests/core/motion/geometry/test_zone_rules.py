@@ -32,7 +32,7 @@ from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, ZoneKind
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import rotation_vector
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 SPEED = Speed(tcp=0.2, reorientation=3.0)
 HALF, SHRINK, SKIP = (MotionModel(overlap=overlap) for overlap in Overlap)

@@ -36,7 +36,7 @@ from flyby.problems.improve.zones.repair import Repair
 from flyby.problems.improve.zones.sizes import GRADED, size_of
 from flyby.validation.scenes.scene import with_zone
 from flyby.validation.scenes.two_joints import two_joints
-from flyby.vendors.kuka.values.zone_kinds import C_VEL
+from flyby.vendors.kuka.zone_kinds import C_VEL
 
 SMALL = Radius(0.01, 0.015, 0.015)
 SCENE = two_joints()

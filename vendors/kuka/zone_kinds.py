@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ....core.program.zone import ZoneKind
+from ...core.program.zone import ZoneKind
 
 C_VEL = ZoneKind("C_VEL")
 """Approximation begins when braking has come down to a share of the speed (``$APO.CVEL``)."""

@@ -1,0 +1,111 @@
+"""Answers of a user, as values of KRL: to data that nothing at hand sets, and to parts of them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ....core.program.question import Answer, QuestionKind
+from ....core.source.execution.answers import About, Course, Fields
+from ..syntax.tree import Name
+from .data import Data
+from .expected import AXIS_NAMES, EXPECTED
+from .predefined import OUTPUTS
+from .scope import Path, spelled
+from .types import FRAME_FIELDS, PREDEFINED
+from .values import Choice, Struct, Unknown, Value
+
+_TRUTHS = frozenset({"$in", "$out", "$flag", "$cycflag"})
+_NUMBER = r"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?"
+_STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+{_NUMBER})*\s*\}}")
+"""``{X 700,Y 0,Z 500}``"""
+
+
+def kind_of(name: str) -> QuestionKind:
+    """What a system variable tells, by its name in lower case."""
+    if re.fullmatch(r"\$(rob_)?timer(_\w+)?|\$date|\$sen_\w+|\$torque\w*|\$curr_\w+", name):
+        return QuestionKind.SENSOR
+    return QuestionKind.SIGNAL
+
+
+@dataclass(frozen=True, slots=True)
+class DatumAnswers:
+    """The user's answers to data."""
+
+    course: Course
+    data: Data
+
+    def used_with(self, value: Unknown, step: str | tuple[int, ...]) -> None:
+        """A component of what nobody says is used: so it is a structure that is asked for."""
+        whole = value.key.endswith(")") or "." not in value.key
+        if not isinstance(step, str) or not value.key or not whole:
+            return
+        if step in FRAME_FIELDS:
+            self.course.used_as(value.key, *EXPECTED["frame"])
+        elif step.upper() in AXIS_NAMES:
+            self.course.used_as(value.key, *EXPECTED["axis"])
+        else:
+            self.course.used_with(value.key, step.upper())
+
+    def answer(
+        self, node: Name, path: Path, kind: QuestionKind | None = None, type_: str = ""
+    ) -> Value | None:
+        """The user's answer to a datum or a part of it.
+
+        Args:
+            kind: what is asked for; None for what comes of something else that is.
+            type_: of the datum, lower case, as far as it is known.
+        """
+        about = None if kind is None else About(node.span, kind, *EXPECTED.get(type_, (type_,)))
+        answer = self.course.value(spelled(node.text, path), about)
+        return None if answer is None else answered(answer)
+
+    def undeclared(self, node: Name, path: Path, why: str | None = None) -> Value:
+        """The value of what nothing declares, or others write: an answer, or not known."""
+        system = self.data.is_system(node.name)
+        kind = kind_of(node.name) if system or node.name in OUTPUTS else QuestionKind.DATUM
+        truths = system and node.name in _TRUTHS
+        if path and path[-1] in ("x", "y", "z", "a", "b", "c"):
+            self.course.used_as(spelled(node.text, path[:-1]), *EXPECTED["frame"])
+        if path and self.course.lasting(spelled(node.text, path)) is None:
+            part = self._part_of_answer(node, path)
+            if part is not None:
+                return part
+        answer = self.answer(node, path, kind, "bool" if truths else "")
+        if answer is not None:
+            return answer
+        if why is None:
+            why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
+        text = spelled(node.text, path)
+        return Unknown(f"the value of {text}{why}", node.span, key=text)
+
+    def _part_of_answer(self, node: Name, path: Path) -> Value | None:
+        """A part of what the user answers as a whole; None if it is not in an answer."""
+        for cut in reversed(range(len(path))):
+            answer = self.course.lasting(spelled(node.text, path[:cut]))
+            if answer is None:
+                continue
+            value: Value | None = answered(answer)
+            for step in path[cut:]:
+                fields = value.fields if isinstance(value, Struct) else {}
+                value = fields.get(step) if isinstance(step, str) else None
+            return value
+        return None
+
+
+def answered(answer: Answer) -> Value:
+    """A user's answer as a value; a text ``{X 700,Y 0,Z 500}`` is a structure."""
+    if isinstance(answer, Fields):
+        return Struct("", {name.lower(): answered(part) for name, part in answer})
+    if isinstance(answer, str) and _STRUCTURE.fullmatch(answer):
+        parts = (part.split() for part in answer.strip("{} ").split(","))
+        return Struct("", {name.lower(): float(number) for name, number in parts})
+    if isinstance(answer, str):
+        return Choice(answer[1:].lower()) if answer.startswith("#") else answer
+    if isinstance(answer, tuple):
+        values = [answered(part) for part in answer]
+        names = list(PREDEFINED["e6pos"])
+        return Struct("", dict(zip(names, values, strict=False)))
+    if isinstance(answer, float) and answer.is_integer() and abs(answer) < 2**31:
+        return int(answer)
+    return answer
