@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core.arrays import FloatArray, IntArray
+from ...core.arrays import BoolArray, FloatArray, IntArray
 from .packing import Quantised
 from .track_content import PageChannel, PageClearance, PageLimits, PageMotion, PageTrack
 
@@ -90,6 +90,62 @@ def on_clock(track: PageTrack, clock: OtherClock, grid: FloatArray) -> PageTrack
         flags=[replace(flag, t=float(clock.first(np.array([flag.t]))[0])) for flag in track.flags],
         clearance=None if track.clearance is None else _clearance(track.clearance, clock),
     )
+
+
+def cut_off(track: PageTrack, end: float) -> PageTrack:
+    """A track as far as it goes before an end; moves behind it are not driven.
+
+    Args:
+        track: of any clock.
+        end: s, a knot of its motion.
+    """
+    rows = track.motion.t.values <= end + _SAME
+    motion = PageMotion(
+        _kept(track.motion.t, rows),
+        [_kept(column, rows) for column in track.motion.q],
+        [_kept(column, rows) for column in track.motion.dq],
+    )
+    moves = [
+        replace(move, begin=None, end=None)
+        if move.begin is None or move.end is None or move.begin >= end - _SAME
+        else replace(move, end=min(move.end, end))
+        for move in track.moves
+    ]
+    limits = track.limits
+    if limits is not None:
+        begun = limits.begin.values < end
+        limits = replace(
+            limits,
+            begin=_kept(limits.begin, begun),
+            end=replace(limits.end, values=np.minimum(limits.end.values[begun], end)),
+            which=_kept(limits.which, begun),
+        )
+    near = track.clearance
+    if near is not None:
+        before = near.t.values <= end
+        first, second = _kept(near.first, before), _kept(near.second, before)
+        near = replace(
+            near,
+            t=_kept(near.t, before),
+            distance=_kept(near.distance, before),
+            first=first,
+            second=second,
+            pair=_kept(near.pair, before),
+        )
+    return replace(
+        track,
+        duration=min(track.duration, end),
+        motion=motion,
+        channels=[replace(one, values=_kept(one.values, rows)) for one in track.channels],
+        moves=moves,
+        limits=limits,
+        flags=[flag for flag in track.flags if flag.t < end],
+        clearance=near,
+    )
+
+
+def _kept(column: Quantised, rows: BoolArray) -> Quantised:
+    return replace(column, values=column.values[rows])
 
 
 def _limits(limits: PageLimits, clock: OtherClock) -> PageLimits:

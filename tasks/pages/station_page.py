@@ -28,7 +28,7 @@ from ...drawing.page.content import (
 )
 from ...drawing.page.curves import BETWEEN, CHARTS
 from ...drawing.page.packing import Quantised
-from ...drawing.page.retiming import OtherClock, on_clock
+from ...drawing.page.retiming import OtherClock, cut_off, on_clock
 from ...drawing.page.track_content import PageChannel, PageChart, PageFlag, PageTrack
 from ...drawing.signals import signals_on
 from ..results.runs import Run
@@ -89,6 +89,8 @@ class _StationPage:
             spans = [spell.action.span for spell in schedule.waits]
             draft.sources.add(run.program, index, spans)
             track = on_clock(draft.tracks[-1], clock, grid)
+            if not np.isfinite(schedule.end):
+                track = cut_off(track, self.last)
             waits = [self._flag(index, spell) for spell in schedule.waits if self._seen(spell)]
             flags = sorted([*track.flags, *waits], key=lambda flag: flag.t)
             draft.tracks[-1] = replace(track, flags=flags)
@@ -156,6 +158,16 @@ class _StationPage:
 
     # Figures at the top
 
+    def _driven(self, index: int, schedule: Schedule) -> float:
+        """s of its own that a robot drives on the page."""
+        if np.isfinite(schedule.end):
+            return self.runs[index].duration
+        return self.last - schedule.begin - self._waited(schedule)
+
+    def _waited(self, schedule: Schedule) -> float:
+        """s that a robot waits for others on the page."""
+        return float(sum(min(s.end, self.last) - s.begin for s in schedule.waits))
+
     def _facts(self) -> dict[str, str]:
         made = self.made
         ends = np.isfinite(made.duration)
@@ -181,10 +193,14 @@ class _StationPage:
         """What the time of each robot goes into."""
         for index, schedule in enumerate(self.made.run.schedules.values()):
             run = self.runs[index]
-            waits = sum(min(s.end, self.last) - s.begin for s in schedule.waits)
-            yield from page_shares(run.program, run.report, index)
+            waits = self._waited(schedule)
+            if np.isfinite(schedule.end):
+                yield from page_shares(run.program, run.report, index)
+            else:
+                driven = self._driven(index, schedule)
+                yield PageShare("motion, waits of its own", driven, index)
             if waits > 0.0:
-                yield PageShare("waits for others", float(waits), index)
+                yield PageShare("waits for others", waits, index)
 
     # Rows over time
 
@@ -232,7 +248,7 @@ class _StationPage:
         for name, spell in made.waits():
             index = names.index(name)
             source, line = self.draft.sources.place(index, spell.action.span)
-            length = min(spell.end, self.last) - spell.begin
+            length = spell.end - spell.begin if np.isfinite(spell.end) else None
             level = "error" if not np.isfinite(spell.end) else ""
             cells = (name, spell.begin, length, _waits_for(spell), _where(spell.action.span))
             rows.append(PageRow(cells, level, index, spell.begin, None, source, line))
@@ -250,7 +266,10 @@ class _StationPage:
                 saved.append(PageRow(changed, "", index, None, None, source, line))
             note = "What could go or come earlier; the station is as much quicker."
             yield PageTable("Interlocks", _SAVINGS, saved, note)
+        schedules = made.run.schedules.values()
         for index, (run, clock) in enumerate(zip(self.runs, self.clocks, strict=True)):
+            if not np.isfinite(list(schedules)[index].end):
+                continue  # Its lines and causes are of a program that is driven to its end.
             for table in time_tables(run, self.draft.sources, index):
                 rows = [
                     row if row.t is None else replace(row, t=clock.last_at(row.t))
@@ -265,7 +284,7 @@ class _StationPage:
     def _robot_rows(self) -> Iterator[PageRow]:
         made = self.made
         for index, (name, schedule) in enumerate(made.run.schedules.items()):
-            waits = sum(min(s.end, self.last) - s.begin for s in schedule.waits)
+            waits = self._waited(schedule)
             ends = np.isfinite(schedule.end)
             slack = made.duration - schedule.end if np.isfinite(made.duration) else None
             cells = (
@@ -273,8 +292,8 @@ class _StationPage:
                 float(len(made.station.members[name].program.moves)),
                 schedule.begin,
                 schedule.end if ends else None,
-                made.station.members[name].run.duration,
-                float(waits) or None,
+                self._driven(index, schedule),
+                waits if waits > 0.0 and ends else None,
                 slack,
             )
             yield PageRow(cells, "" if ends else "error", index, schedule.begin)
@@ -311,7 +330,8 @@ def _clock(schedule: Schedule, duration: float, last: float) -> OtherClock:
 
 
 def _waits_for(spell: Spell) -> str:
-    return spell.action.text + (" (gave up)" if spell.given_up else "")
+    how = " (gave up)" if spell.given_up else "" if np.isfinite(spell.end) else " (for ever)"
+    return spell.action.text + how
 
 
 def _where(span: Span | None) -> str:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.drawing.page.packing import Quantised
-from flyby.drawing.page.retiming import OtherClock, on_clock
+from flyby.drawing.page.retiming import OtherClock, cut_off, on_clock
 from flyby.drawing.page.track_content import PageChannel, PageFlag, PageMotion, PageMove, PageTrack
 
 STOPS = (0.0, 1.0, 2.5, 4.0)
@@ -75,3 +75,12 @@ def test_a_rest_that_the_motion_lags_into_is_before_the_move() -> None:
     rests = OtherClock(0.0, np.array([0.03]), np.array([2.0]), lag=0.03)
     assert abs(rests.begins(np.array([0.0]))[0] - 2.0) < 1e-9
     assert rests.first(np.array([0.0]))[0] == 0.0
+
+
+def test_what_waits_for_ever_drives_no_further() -> None:
+    rests = OtherClock(0.5, np.array([1.0]), np.array([2.0]))
+    made = cut_off(on_clock(track(), rests, np.linspace(0.0, 3.5, 8)), 3.5)
+    assert made.duration == made.motion.t.values[-1] == 3.5
+    assert abs(made.motion.q[0].values[-1] - track().motion.q[0].values[1]) < 1e-9
+    assert [move.end for move in made.moves] == [1.5, None, None]
+    assert all(len(one.values.values) == len(made.motion.t.values) for one in made.channels)

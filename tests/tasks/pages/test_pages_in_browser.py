@@ -13,6 +13,7 @@ import trimesh
 import flyby
 from flyby.core.errors import InputError
 from flyby.tasks.pages.of_results import BUILDERS, page_bytes, page_of
+from flyby.tasks.pages.station_page import station_page
 
 from ...cli.box_program import CELL, module
 
@@ -255,6 +256,11 @@ def test_a_station_that_never_ends_says_so(opened: Opened, folder: Path) -> None
     view = opened(page_bytes(made))
     assert "never ends" in view.locator(".top").inner_text()
     assert view.locator(".notices li").count() == len(made.findings())
+    # Right waits for ever where it began, and is shown no further than that.
+    page = station_page(made)
+    right = page.tracks[1]
+    assert right.duration <= page.tracks[0].duration * 1.05 + 1e-9
+    assert [move.end for move in right.moves[1:]] == [None] * (len(right.moves) - 1)
 
 
 def test_a_log_beside_its_emulation(opened: Opened, folder: Path) -> None:
