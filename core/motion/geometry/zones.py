@@ -21,6 +21,7 @@ from ..model.motion_model import MotionModel
 from ..model.rules import OrientationZone, Overlap, Pace, Space
 from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room, TimedBlend
 from .neighbour_zones import STILL, way_towards_neighbour
+from .overlaps import Reaches, left_out, shrunk, taken
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments, in_time
 from .smaller_blends import acceleration_along, share_kept
@@ -33,10 +34,6 @@ _UNSEEN = 1e-7
 """m, or share of a line, below which a zone by speed is a stop: that of a crawling robot."""
 _DISTANCE, _TURN = (first_exit, tcp_apart), (first_turn, tool_apart)
 """What tells how far the TCP, or by how much the tool, is from a waypoint along a joint line."""
-_Reaches = tuple[tuple[Reach, Reach], ...]
-"""Of position, turning and prescribed axes, into the segment before a corner and the one after."""
-_Wanted = list[_Reaches] | dict[int, _Reaches]
-"""By corner."""
 
 
 class ZonePlanner:
@@ -83,9 +80,12 @@ class ZonePlanner:
         wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
         overlapping: tuple[int, ...] = ()
         if self._model.overlap is Overlap.SHRINK:
-            wanted = self._shrunk(wanted)
+            wanted, factors = shrunk(wanted)
+            for i, factor in factors.items():
+                self._note(i, f"overlapping blend shrunk to {100 * factor:.4g} %")
         elif self._model.overlap is Overlap.SKIP:
-            overlapping = self._overlapping(wanted)
+            overlapping = tuple(left_out(wanted))
+            self._check_left_out(overlapping)
         if self._model.tcp.kind == "arc" and self._model.pace is Pace.SUPERPOSED:
             wanted = [self._lessened(i, pairs) for i, pairs in enumerate(wanted)]
         values = [[(before.value, after.value) for before, after in pairs] for pairs in wanted]
@@ -96,7 +96,16 @@ class ZonePlanner:
         timed = self._timed(kind, wanted)
         return Corners(kind, reach, wanted, self._kept, overlapping, self._notes, timed)
 
-    def _timed(self, kind: IntArray, wanted: Sequence[_Reaches]) -> dict[int, TimedBlend]:
+    def _check_left_out(self, corners: Sequence[int]) -> None:
+        for corner in corners:
+            if ARC_SEGMENT in self._kinds[corner : corner + 2]:
+                raise MotionError(
+                    "its blend overlaps a neighbouring one next to an arc, which cannot be left "
+                    "out; make the blend radius smaller",
+                    self._moves[corner],
+                )
+
+    def _timed(self, kind: IntArray, wanted: Sequence[Reaches]) -> dict[int, TimedBlend]:
         """The corners of joint moves that the vendor blends in time."""
         if self._model.joint.kind != "quintic":
             return {}
@@ -119,9 +128,9 @@ class ZonePlanner:
             return [room for i, zone in enumerate(zones) for room in self._halves(i, zone)]
         wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
         return [
-            Room(Reach(1.0) + taken * Reach(-1.0), min(k, len(wanted) - 1))
+            Room(Reach(1.0) + own * Reach(-1.0), min(k, len(wanted) - 1))
             for k in range(len(wanted) + 1)
-            if (taken := self._taken(k, wanted)).value != 0.0
+            if (own := taken(k, wanted, len(self._chains))).value != 0.0
         ]
 
     def share_taken(self, segment: int, zones: Sequence[Zone]) -> float:
@@ -132,7 +141,8 @@ class ZonePlanner:
             zones: as in `corners`; only those two count.
         """
         ends = range(max(segment - 1, 0), min(segment + 1, len(zones)))
-        return self._taken(segment, {i: self._reaches(i, zones[i]) for i in ends}).value
+        wanted = {i: self._reaches(i, zones[i]) for i in ends}
+        return taken(segment, wanted, len(self._chains)).value
 
     def widest(self, i: int, most: float) -> float | None:
         """Radius (m) up to which no rule on neighbouring points cuts the zone at a corner.
@@ -159,12 +169,6 @@ class ZonePlanner:
         less = Reach(-zone.tcp, (("tcp", i, -1.0),))
         return [Room(half + less, i) for half in halves if half is not None]
 
-    def _taken(self, segment: int, wanted: _Wanted) -> Reach:
-        """Share of a segment that the zones at its ends take together."""
-        before = wanted[segment - 1][POSITION][1] if segment > 0 else Reach(0.0)
-        after = wanted[segment][POSITION][0] if segment + 1 < len(self._chains) else Reach(0.0)
-        return before + after
-
     @property
     def _furthest(self) -> float:
         """Share of the way to a neighbouring point beyond which no zone reaches."""
@@ -181,7 +185,7 @@ class ZonePlanner:
             )
         return TCP_CORNER if same_chain and joint == 0 else JOINT_CORNER
 
-    def _reaches(self, i: int, zone: Zone) -> _Reaches:
+    def _reaches(self, i: int, zone: Zone) -> Reaches:
         """Reaches of position, turning and prescribed axes before the rules on overlap."""
         if isinstance(zone, Fine) or self._stops(i):
             return ((Reach(0.0), Reach(0.0)),) * 3
@@ -419,7 +423,7 @@ class ZonePlanner:
         parts.append((f"q{far}", segment, -share * pull / speed))
         return Reach(share, tuple(parts))
 
-    def _lessened(self, i: int, pairs: _Reaches) -> _Reaches:
+    def _lessened(self, i: int, pairs: Reaches) -> Reaches:
         """A zone made smaller where legs arrive at another speed than its arc's; see
         `smaller_blends`."""
         model, s = self._model, self._segments
@@ -438,40 +442,3 @@ class ZonePlanner:
             f"blend of {radius:.4g} mm made {kept.value * radius:.4g} mm: {why}",
         )
         return tuple((before * kept, after * kept) for before, after in pairs)
-
-    def _shrunk(self, wanted: list[_Reaches]) -> list[_Reaches]:
-        """Both zones on a segment shrink in proportion until they touch."""
-        factors = [Reach(1.0) for _ in wanted]
-        for segment in range(1, len(wanted)):
-            total = self._taken(segment, wanted)
-            if total.value > 1.0:
-                factor = total.inverse()
-                factors[segment - 1] = least(factors[segment - 1], factor)
-                factors[segment] = least(factors[segment], factor)
-        for i, factor in enumerate(factors):
-            if factor.value < 1.0 - 1e-9:
-                self._note(i, f"overlapping blend shrunk to {100 * factor.value:.4g} %")
-        return [
-            tuple((before * f, after * f) for before, after in pairs)
-            for pairs, f in zip(wanted, factors, strict=True)
-        ]
-
-    def _overlapping(self, wanted: list[_Reaches]) -> tuple[int, ...]:
-        """Corners to leave out; no two neighbours, as leaving one out changes the other."""
-        found: list[int] = []
-        for segment in range(len(wanted) + 1):
-            taken = self._taken(segment, wanted).value
-            outermost = segment in (0, len(wanted)) and taken >= 1.0
-            if not (taken > 1.0 + 1e-9 or outermost):
-                continue
-            corner = min(segment, len(wanted) - 1)
-            if found and corner - found[-1] < 2:
-                continue
-            if (self._segments.ends.kind[corner : corner + 2] == ARC_SEGMENT).any():
-                raise MotionError(
-                    "its blend overlaps a neighbouring one next to an arc, which cannot be left "
-                    "out; make the blend radius smaller",
-                    self._moves[corner],
-                )
-            found.append(corner)
-        return tuple(found)

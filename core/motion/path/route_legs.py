@@ -28,7 +28,7 @@ class MoveEnd:
     dwell: float = 0.0
 
 
-class Passed(NamedTuple):
+class MoveEnds(NamedTuple):
     """What happens where moves that go somewhere end.
 
     Args:
@@ -66,7 +66,7 @@ class RouteLegs:
 
     def passed(
         self, keep: Iterable[bool], waypoints: Mapping[int, MoveEnd], notes: list[Note]
-    ) -> Passed:
+    ) -> MoveEnds:
         """What happens at waypoints when moves that go nowhere are dropped: their stops and waits
         stay.
 
@@ -92,7 +92,7 @@ class RouteLegs:
                 zones[-1], owners[-1] = here.zone, move
             if move != self.at_start:
                 notes.append(Note("goes nowhere: it is at its target already", move))
-        return Passed(zones, owners, dwell)
+        return MoveEnds(zones, owners, dwell)
 
 
 def rows_of(ends: Ends, which: NDArray[np.int64]) -> Ends:
