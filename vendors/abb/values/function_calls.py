@@ -12,7 +12,7 @@ from ..syntax.cursor import Cursor
 from ..syntax.expressions import parse_expression
 from ..syntax.lexer import END, tokenize
 from ..syntax.tree import Argument, Call, Expression, Name, Routine
-from .answers import TypedAnswers
+from .answers import TypedAnswers, kind_brought_by
 from .arguments import check_count
 from .data import Globals
 from .defaults import carried, default_of, nominal
@@ -22,7 +22,6 @@ from .located import Located
 from .operators import OperandError, is_vector
 from .outputs import READING
 from .provenance import constant, source_of_literal
-from .question_kinds import kind_brought_by
 from .scope import Scope, Variable, unknown_name
 from .types import NUM, Type, Unknown, Value, find_unknown, mismatch
 
