@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from ..display import counted, in_line
 from ..errors import FlybyError, Note, SourceError
 from ..program.question import QuestionKind
-from .execution.answers import AnswerError, Answers, stands_in
+from .execution.answers import Answers, stands_in
+from .execution.course import AnswerError
 from .execution.limits import EndlessError, Executed, ExecutionLimits
 from .text.files import SourceFile, stray_return, wide_file
 

@@ -8,7 +8,7 @@ from typing import Generic
 
 from ...errors import InputError, SourceError, Span
 from .analysis import Analysis
-from .answers import Course
+from .course import Course
 from .steps import Block, Exit
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from ...errors import Span
-from .answers import Course
+from .course import Course
 from .limits import Meter
 from .outputs import Outputs
 

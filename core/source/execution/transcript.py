@@ -13,7 +13,7 @@ from ...program.origin import MoveOrigin
 from ...program.speed import Speed
 from ...program.target import PoseTarget
 from ...spatial.pose import Pose
-from .answers import AnswerError, Course
+from .course import AnswerError, Course
 from .limits import EndlessError
 from .provenance import MovePart, Reads
 from .streams import Stream, Streaming

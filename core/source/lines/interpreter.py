@@ -17,7 +17,7 @@ from ...program import call, move
 from ...program.move import Wait
 from ...program.program import Program
 from ..execution.analysis import Analysis
-from ..execution.answers import Course
+from ..execution.course import Course
 from ..execution.endings import Loop
 from ..execution.flow import Flow
 from ..execution.limits import Meter

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...errors import SourceError, Span
 from ...program.question import Answer
-from ..execution.answers import About, AnswerError, Course
+from ..execution.course import About, AnswerError, Course
 from ..execution.outputs import Outputs
 from .expressions import COMPUTE, Datum, Expression, Number, Operation, Truth, Value
 from .program import Grammar

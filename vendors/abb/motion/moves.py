@@ -19,7 +19,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import WORLD, Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.provenance import MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ..syntax.tree import Expression, Invoke, Name

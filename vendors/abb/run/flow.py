@@ -8,7 +8,7 @@ from typing import Protocol
 
 from ....core.errors import SourceError
 from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.endings import Loop
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided

@@ -17,7 +17,7 @@ from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.endings import Loop
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter

@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ..motion.settings import SettingsInForce
 from ..syntax import tree
 from ..values.defaults import nominal

@@ -9,7 +9,8 @@ from collections.abc import Callable
 
 from ....core.errors import Span
 from ....core.program.question import Answer, QuestionKind
-from ....core.source.execution.answers import About, AnswerError, Course, Fields
+from ....core.source.execution.answers import Fields
+from ....core.source.execution.course import About, AnswerError, Course
 from ..syntax import tree
 from .elements import array_mismatch
 from .types import BOOL, NUM, STRING, Foreign, RecordType, Scalar, Type, Unknown, Value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.provenance import ELSEWHERE
 from ..syntax import tree
 from .answers import like_signals

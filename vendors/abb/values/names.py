@@ -9,7 +9,7 @@ from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.program.question import QuestionKind
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.suppose import is_open
@@ -63,7 +63,7 @@ class Names(ABC):
         data: of all modules.
         course: has the user's answers.
         text_of: what stands at a place.
-        host: is told of names that are declared nowhere at hand.
+        host: hears of names that are declared nowhere at hand.
         signals: what signals are, by lower-case name, where a backup says so.
 
     Attributes:

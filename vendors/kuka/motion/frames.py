@@ -14,7 +14,7 @@ from ....core.errors import InputError, SourceError, Span
 from ....core.files.toml_text import key_text
 from ....core.program.question import QuestionKind
 from ....core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
-from ....core.source.execution.answers import About, Course
+from ....core.source.execution.course import About, Course
 from ....core.spatial.pose import IDENTITY, Pose
 from ..values.expected import EXPECTED
 from ..values.frames import null_frame, number_or_zero, pose_of

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from ....core.errors import SourceError
-from ....core.source.execution.answers import About, Course
+from ....core.source.execution.course import About, Course
 from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.execution.scopes import unknown_name
 from ..motion.bas import Basis

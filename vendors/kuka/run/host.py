@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript

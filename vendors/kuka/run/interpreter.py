@@ -15,7 +15,7 @@ from ....core.program.call import Call as ProgramCall
 from ....core.program.entry_point import EntryPoint
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.flow import Flow as Rules
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.streams import Streaming

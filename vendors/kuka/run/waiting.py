@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 
 from ....core.errors import SourceError
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.suppose import ConditionParts, Supposing
 from ..syntax.traversal import calls_in, data_in
 from ..syntax.tree import Ambiguous, Expression, Name, Operation, Unary

@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass
 
 from ....core.program.question import Answer, QuestionKind
-from ....core.source.execution.answers import About, Course, Fields
+from ....core.source.execution.answers import Fields
+from ....core.source.execution.course import About, Course
 from ..syntax.tree import Name
 from .data import Data
 from .expected import AXIS_NAMES, EXPECTED

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from ....core.errors import LeftOpenError, SourceError, Span
 from ....core.program.question import QuestionKind
-from ....core.source.execution.answers import Course
+from ....core.source.execution.course import Course
 from ....core.source.execution.suppose import is_open
 from ..syntax.tree import Expression, Name
 from .advance_run import AdvanceRun

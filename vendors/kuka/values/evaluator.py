@@ -9,7 +9,7 @@ from dataclasses import replace
 from ....core.door import spelt
 from ....core.errors import LeftOpenError, SourceError, Span
 from ....core.program.question import QuestionKind
-from ....core.source.execution.answers import About, Course
+from ....core.source.execution.course import About, Course
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.scopes import unknown_name
 from ..syntax import tree

@@ -6,7 +6,8 @@ import re
 from typing import Protocol
 
 from ....core.program.question import Answer, QuestionKind
-from ....core.source.execution.answers import About, Course, Fields
+from ....core.source.execution.answers import Fields
+from ....core.source.execution.course import About, Course
 from ..syntax.texts import Texts
 from ..syntax.tree import Call, Expression, Index, MethodCall, Name
 from .expected import EXPECTED, list_of, returned_by

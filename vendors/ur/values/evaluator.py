@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.program.question import QuestionKind
-from ....core.source.execution.answers import About, Course
+from ....core.source.execution.course import About, Course
 from ..syntax import tree
 from ..syntax.texts import Texts
 from .answers import answered, used_as

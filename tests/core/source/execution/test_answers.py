@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, Span, UnknownNameError
-from flyby.core.source.execution.answers import Answers, Course, key
+from flyby.core.source.execution.answers import Answers, key
 from flyby.core.source.execution.answers_file import load_answers
+from flyby.core.source.execution.course import Course
 
 
 def span(line: int = 1, file: str = "cell/main.mod") -> Span:

@@ -10,7 +10,8 @@ import pytest
 
 from flyby.core.errors import SourceError, Span
 from flyby.core.source.execution.analysis import Analysis
-from flyby.core.source.execution.answers import Answers, Course
+from flyby.core.source.execution.answers import Answers
+from flyby.core.source.execution.course import Course
 from flyby.core.source.execution.endings import FOLLOWED, Loop
 from flyby.core.source.execution.flow import Flow
 from flyby.core.source.execution.host import Undecided
