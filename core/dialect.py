@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from .source.text.files import SourceFile
 
 _VISIBLE = re.compile(r"[^\r\n]")
+_GIVEN = re.compile(r"\s*(?:,[^\]\r\n]*)?\]?\s*:?=(?!=)")
+_BEGINS = re.compile(r"(?:^|[:;])[^\S\r\n]*\Z")
 _LISTED = re.compile(r"(?:\[[^\]]*\]|\{[^}]*\}|[^,\[{])+")
 """One of several names: the commas of its indices part none."""
 PACES = ("tcp", "joint_fraction", "joint")
@@ -107,6 +109,7 @@ class OutputWords:
         level: text of the action that sets an analogue output, by its name, to a value.
         longest_lead: s that an event's time may be at most.
         from_start: whether distances may count from a move's start.
+        at_start: whether times may.
         along_joint: whether places on the way of joint moves may have distances.
         both: whether a place may have a distance and a time.
         most: events that one move may have.
@@ -116,6 +119,7 @@ class OutputWords:
     level: Callable[[str, float], str]
     longest_lead: float
     from_start: bool = True
+    at_start: bool = True
     along_joint: bool = True
     both: bool = True
     most: float = math.inf
@@ -128,7 +132,7 @@ class OutputWords:
         if abs(event.time) > self.longest_lead:
             return False
         if event.distance == 0:
-            return True
+            return self.at_start or event.anchor is EventAnchor.END
         if event.time != 0 and not self.both:
             return False
         here = self.from_start or event.anchor is EventAnchor.END
@@ -272,7 +276,8 @@ class Wording:
         module: names the module of a file: what is declared outside of routines is seen in all
             files of one module, before what others declare.
         named: tells of a text without comments and strings what it does with names, in order; names
-            of components and arguments are left out. None where only targets are declared.
+            of components and arguments are left out. None where only targets are declared, and
+            what a sign ``=`` follows at a statement's beginning is given a value.
         unsaid: finds the data that instructions depend on and set without naming them, in a text
             without comments and strings: speeds and zones that hold until they are set again.
         blocks: words that ``open``, ``part`` and ``close`` a block, any ``label``, and what is
@@ -315,7 +320,12 @@ class Wording:
             return
         declared = {at for _, at in self.declared(text)}
         for found in self.name.finditer(text):
-            yield found[0], Mention.DECLARED if found.start() in declared else Mention.USED
+            if found.start() in declared:
+                yield found[0], Mention.DECLARED
+                continue
+            line = text[text.rfind("\n", 0, found.start()) + 1 : found.start()]
+            begins = _BEGINS.search(line) and _GIVEN.match(text, found.end())
+            yield found[0], Mention.ASSIGNED if begins else Mention.USED
 
     def folded(self, name: str) -> str:
         """A name as it is compared with others."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .errors import Span
+from .errors import InputError, Span
 from .program.program import Program
 from .program.section import Section
 
@@ -74,6 +75,25 @@ class Recording:
 def routine(number: int) -> str:
     """What the routine of a run is called, counted from 1."""
     return f"run{number:02}"
+
+
+def cycles_in(period: float, cycle: float, robot: str) -> int:
+    """How many of a controller's cycles a log's period is.
+
+    Args:
+        period, cycle: s.
+        robot: for the message.
+
+    Raises:
+        InputError: it is no whole number of them.
+    """
+    cycles = period / cycle if math.isfinite(period) else 0.0
+    if round(cycles) < 1 or abs(cycles - round(cycles)) > 1e-6 * cycles:
+        raise InputError(
+            f"{robot} runs in cycles of {cycle:g} s: a log has a period of {cycle:g} s or a whole "
+            f"multiple of it, not {period:g} s"
+        )
+    return round(cycles)
 
 
 def comments(mark: str, sentences: Iterable[str]) -> list[str]:

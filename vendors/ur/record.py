@@ -7,12 +7,10 @@ memory; before one that the robot is jogged to it halts.
 
 from __future__ import annotations
 
-import math
 from importlib.resources import files
 
-from ...core.errors import InputError
 from ...core.language import Sources
-from ...core.recording import Recording, comments, listed
+from ...core.recording import Recording, comments, cycles_in, listed
 from ...core.robot.model import Robot
 from ...core.source.write.options import OpaqueStyle, StructureStyle
 from .write.formatting import number
@@ -26,8 +24,6 @@ CB3_CYCLE = 0.008
 USUAL_PERIOD = 0.008
 """s. A whole number of cycles of both."""
 _CB3 = ("ur3", "ur5", "ur10")
-_WHOLE = 1e-6
-"""How near a period must come to a whole number of cycles."""
 
 HOST = "192.168.1.100"
 PORT = 50010
@@ -92,7 +88,7 @@ def record(recording: Recording, robot: Robot, period: float) -> Sources:
         MotionError: URScript cannot say a move.
     """
     cycle = CB3_CYCLE if robot.name.rpartition("/")[2] in _CB3 else CYCLE
-    cycles = _cycles(period, cycle, robot.name)
+    cycles = cycles_in(period, cycle, robot.name)
     structure = StructureStyle.FLAT if recording.alone else StructureStyle.KEEP
     options = ScriptOptions(opaque=OpaqueStyle.COMMENT, structure=structure)
     script = body(recording.program, robot, options, *_NAMES)
@@ -118,16 +114,6 @@ def steps(recording: Recording, period: float) -> list[str]:
             "again, say its number.",
         ]
     return made
-
-
-def _cycles(period: float, cycle: float, name: str) -> int:
-    cycles = period / cycle if math.isfinite(period) else 0.0
-    if round(cycles) < 1 or abs(cycles - round(cycles)) > _WHOLE * cycles:
-        raise InputError(
-            f"{name} runs in cycles of {cycle:g} s: a log has a period of {cycle:g} s or a whole "
-            f"multiple of it, not {period:g} s"
-        )
-    return round(cycles)
 
 
 def _text(recording: Recording, script: Script, cycles: int, cycle: float) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar
 
 from ...errors import InputError
+from ...program.signal import SetSignal
 from .expressions import (
     USUAL,
     Datum,
@@ -22,6 +23,7 @@ from .expressions import (
 from .program import Grammar, Said, several
 from .statements import (
     Assign,
+    AssignAll,
     Body,
     Call,
     Close,
@@ -58,6 +60,7 @@ class FormGrammar(Grammar):
         driving: what begins a motion: lines that begin so and fit no form are refused, since they
             may move the robot; other lines are kept as text.
         stopping: names of kept instructions at which the robot stops.
+        current: what stands for the numbers of where the running robot is, in capitals.
         longest: characters of a line.
     """
 
@@ -65,6 +68,7 @@ class FormGrammar(Grammar):
     spelling: Spelling = USUAL
     driving: re.Pattern[str] = re.compile(r"(?!)")
     stopping: frozenset[str] = frozenset()
+    current: frozenset[str] = frozenset()
     longest: int = 1000
 
     def __init__(self) -> None:
@@ -115,11 +119,31 @@ class FormGrammar(Grammar):
         """The numbers in those of the groups that a move has, as a part of it.
 
         Args:
-            whole: the group in whose place words of its own would be put.
+            whole: the group in whose place words of its own would be put; the whole line, if
+                that has nothing of the kind.
         """
         given = (group for group in groups if found[group])
-        span = line.source.span(*found.span(whole))
+        span = line.source.span(*found.span(whole)) if found[whole] else line.span
         return Operand(span, tuple(self.parse(line, found, group) for group in given))
+
+    def options(
+        self, line: Line, found: Found, group: str, option: re.Pattern[str]
+    ) -> dict[str, tuple[int, int]]:
+        """The options in a group: where what their named groups hold stands in the text.
+
+        Raises:
+            InputError: an option is not known.
+        """
+        given: dict[str, tuple[int, int]] = {}
+        text, (at, end) = line.source.text, found.span(group)
+        while text[at:end].strip():
+            one = option.match(text, at, end)
+            if one is None or one.end() == at:
+                left = text[at:end].strip()
+                raise InputError(f"the option {left!r} is not known: it may move the robot")
+            given |= {name: one.span(name) for name, said in one.groupdict().items() if said}
+            at = one.end()
+        return given
 
     def _action(self, line: Line, found: Found, group: str = "action") -> Body:
         start, end = found.span(group)
@@ -141,7 +165,7 @@ class FormGrammar(Grammar):
         stops = name.upper() in self.stopping
         return Kept(line.span, name, "what it does is not known", stops)
 
-    def harmless(self, line: Line, found: Found) -> Statement:
+    def harmless(self, line: Line, found: Found) -> Kept:
         """What does not move the robot, and is kept."""
         word = re.match(r"[\w.$#]+", line.text)
         return Kept(line.span, word[0] if word else line.text[:12], "it does not move the robot")
@@ -285,11 +309,24 @@ class FormGrammar(Grammar):
         return Pause(line.span, condition=self.parse(line, found, "condition"))
 
     def assigned(self, line: Line, found: Found) -> Statement:
-        """A ``target`` becomes a ``value``; what is no register and no output is kept."""
+        """A ``target`` becomes a ``value``; what is no register and no output is kept. All numbers
+        of one that has several become those of data, their sums and differences."""
         target = self.datum(line, found, "target")
+        if target.word in self.vectors and target.element is None:
+            if found["value"].strip().upper() in self.current:
+                return AssignAll(line.span, target, (), "where the running robot is")
+            return AssignAll(line.span, target, tuple(_terms(self.parse(line, found, "value"))))
         if target.word not in self.registers and target.word not in self.outputs:
             return Kept(line.span, target.word, "it does not move the robot")
         return Assign(line.span, target, self.parse(line, found, "value"))
+
+    def pulsed(self, line: Line, found: Found) -> Statement:
+        """An output ``target`` is turned on for a ``time``, s."""
+        name, time = self.datum(line, found, "target"), self.parse(line, found, "time")
+        done = None
+        if isinstance(name.index, Number) and isinstance(time, Number):
+            done = SetSignal(f"{name.word}[{name.index.value:g}]", True, time.value)
+        return replace(self.harmless(line, found), signal=done)
 
     def switched(self, line: Line, found: Found) -> Statement:
         """An output ``target`` is turned on, or off if there is a group ``off``."""
@@ -303,6 +340,19 @@ def _case(line: Line, condition: Expression | None, begun: bool) -> Statement:
     if condition is None:
         raise InputError("a case with a value should stand first")
     return Open(line.span, condition)
+
+
+def _terms(value: Expression, sign: float = 1.0) -> Iterator[tuple[float, Datum]]:
+    """The data of a sum, each with its sign."""
+    if isinstance(value, Datum):
+        yield sign, value
+    elif isinstance(value, Operation) and value.word in "+-":
+        *first, last = value.operands
+        for one in first:
+            yield from _terms(one, sign)
+        yield from _terms(last, -sign if value.word == "-" else sign)
+    else:
+        raise InputError("positions and registers of several numbers should stand here")
 
 
 def _table(kind: type[FormGrammar]) -> list[tuple[re.Pattern[str], Form]]:

@@ -25,6 +25,7 @@ from ..write.refusals import check_said
 from ..write.statements import lines_of_statements
 from .files import with_called
 from .interpreter import run_lines
+from .motions import MotionWords
 from .patcher import patch_lines
 from .positions import PositionForm
 from .program import Grammar, Initial, LineProgram, plain_lines, read_lines
@@ -55,6 +56,7 @@ class LineLanguage:
         suffix: of the files that it writes.
         dialect: what it has words for.
         positions: how it says positions.
+        motion: how its motions say speeds and zones; None if settings do.
         trailing: what begins a comment behind a statement; ``""`` for none.
         called: in a text, names of the programs that it calls, whose files stand beside; None for
             programs in one file.
@@ -65,6 +67,7 @@ class LineLanguage:
     suffix: str
     dialect: Dialect
     positions: PositionForm
+    motion: MotionWords | None = None
     trailing: str = ""
     called: re.Pattern[str] | None = None
     always: tuple[str, ...] = ()
@@ -104,13 +107,16 @@ class LineLanguage:
         return nine_decimals(value)
 
     def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
-        """The numbers of a speed or zone, in the order in which a move has them; the language's
-        settings unless it says otherwise."""
+        """The numbers of a speed or zone, in the order in which a move has them."""
+        if self.motion is not None:
+            return self.motion.numbers(part, move)
         return self.grammar().settings.numbers(kind, part, move)
 
     def own(self, use: Use) -> Iterator[Edit]:
-        """What is put at a move that gets numbers, or words, of its own: settings unless the
-        language says otherwise."""
+        """What is put at a move that gets numbers, or words, of its own."""
+        if self.motion is not None:
+            yield from self.motion.own(use)
+            return
         settings = self.grammar().settings
         if isinstance(use.new, JointTarget | PoseTarget) or not any(settings):
             raise InputError("there is no number of its own to change: write the program anew")
@@ -154,8 +160,12 @@ class LineLanguage:
         writer = writer or self.writer(options)
 
         def move(move: Move, *_: object) -> Iterable[str]:
+            if options.opaque is OpaqueStyle.COMMENT:
+                for event in move.events:
+                    yield from self.comment(event.text)
+                move = replace(move, events=())
             check_said(move, self.dialect, self.name)
-            return writer.move(move)
+            yield from writer.move(move)
 
         def wait(wait: Wait) -> Iterable[str]:
             return (writer.wait(wait),)
@@ -173,7 +183,7 @@ class LineLanguage:
         Raises:
             InputError: the language cannot say the move.
         """
-        check_said(move, self.dialect, self.name)
+        check_said(replace(move, events=()), self.dialect, self.name)
         if isinstance(part, JointTarget | PoseTarget):
             return self.positions.numbers(part)
         return self.settings_of(kind, part, move)

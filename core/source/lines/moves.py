@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Generic, TypeVar
 
 from ...errors import InputError
@@ -12,6 +13,7 @@ from ...program.speed import Speed
 from ...program.target import JointTarget, PoseTarget, Target
 from ...program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...program.zone import Zone
+from ...spatial.pose import Pose
 
 Point = TypeVar("Point")
 
@@ -47,6 +49,38 @@ def made_move(
     return MoveC(
         target, speed, zone, tool, work_object, events=events, via=via, orientation=turning
     )
+
+
+def said(move: Move) -> tuple[str, tuple[Target, ...]]:
+    """``J``, ``L`` or ``C`` of a move, and its targets in the order in which they are named."""
+    targets = (move.via, move.target) if isinstance(move, MoveC) else (move.target,)
+    return type(move).__name__[-1], targets
+
+
+def counted_on(target: Target, before: Move | None, tool: Tool, work_object: WorkObject) -> Target:
+    """Where a motion goes whose numbers count from the position before (``INC``).
+
+    Args:
+        target: of its numbers: what is added to joint values, or to x, y, z, and turned.
+        before: the motion before; None if nobody knows it.
+        tool, work_object: of the motion.
+
+    Raises:
+        InputError: the position before is of another kind, or is not known.
+    """
+    here = None if before is None else before.target
+    if isinstance(target, JointTarget) and isinstance(here, JointTarget):
+        pairs = zip(target.joints, here.joints, strict=True)
+        return JointTarget(tuple(a + b for a, b in pairs))
+    same = before is not None and (before.tool, before.work_object) == (tool, work_object)
+    if not (isinstance(target, PoseTarget) and isinstance(here, PoseTarget) and same):
+        raise InputError(
+            "it counts from the position before, which is none of the same kind in the same "
+            "frames, or is not known"
+        )
+    x, y, z = (a + b for a, b in zip(here.pose.position, target.pose.position, strict=True))
+    turned = Pose(quaternion=target.pose.quaternion) @ Pose(quaternion=here.pose.quaternion)
+    return replace(target, pose=Pose((x, y, z), turned.quaternion))
 
 
 class ArcPoints(Generic[Point]):

@@ -84,4 +84,11 @@ class PositionForm:
             zyz = self.orientation is Orientation.EULER_ZYZ
             turns = (euler_zyz if zyz else euler_zyx)(matrix)
         turns = turns[::-1] if self.last_first else turns
-        return (*place, *(turns if self.in_si else map(math.degrees, turns)))
+        if self.in_si:
+            return (*place, *turns)
+        return (*place, *(_one_name(math.degrees(turn)) for turn in turns))
+
+
+def _one_name(degrees: float) -> float:
+    """180° and -180° are one turn, and have one name."""
+    return -degrees if degrees <= -180.0 + 1e-9 else degrees

@@ -170,7 +170,8 @@ def _statements(
         try:
             said = grammar.statement(line)
         except (InputError, ValueError) as error:
-            raise SourceError(f"{line.text!r} is no {name} statement: {error}", line.span) from None
+            text = " ".join(source.text[line.start : line.end].split())
+            raise SourceError(f"{text!r} is no {name} statement: {error}", line.span) from None
         yield from ((line, one) for one in several(said))
 
 

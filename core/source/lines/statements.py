@@ -7,7 +7,6 @@ before a statement makes it an `If` of that one statement; `blocks` makes one of
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from typing import Any, Protocol
 
 from ...errors import Span
 from ...program.move import Move
+from ...program.signal import SignalAction
 from ..text.files import SourceText
 from .expressions import Datum, Expression
 
@@ -78,9 +78,6 @@ class Situation(Protocol):
         """These parts (``target``, ``speed``, ``zone``, ``via``) of the move are not what the text
         states: no number of it can be changed for them."""
         ...
-
-
-_LINE = re.compile(r"[^\r\n]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,12 +255,14 @@ class Kept:
         name: of the instruction, for the note.
         why: it is not carried out.
         stops: whether the robot stops at it.
+        signal: what it does with a signal, if that is known.
     """
 
     span: Span
     name: str
     why: str
     stops: bool = False
+    signal: SignalAction | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from typing import Generic, TypeVar
 
 from ...errors import InputError
@@ -45,3 +45,28 @@ class Numbering(Generic[Value]):
                 raise InputError(f"there are no more than {self._most} {self._what}")
             self.numbers[value] = wanted
         return self.numbers[value]
+
+
+class PointNumbers:
+    """Points that are declared as motions name them; those that say the same are one point.
+
+    Args:
+        text: the declaration of a point, of its number and of what it says.
+        first: number of the first one.
+
+    Attributes:
+        texts: the declarations, in the order of their numbers.
+    """
+
+    def __init__(self, text: Callable[..., str], first: int = 1) -> None:
+        self._text, self._first = text, first
+        self._numbers: dict[str, int] = {}
+        self.texts: list[str] = []
+
+    def of(self, *said: Hashable) -> int:
+        """The number of the point that says this."""
+        key = self._text(0, *said)
+        if key not in self._numbers:
+            self._numbers[key] = self._first + len(self.texts)
+            self.texts.append(self._text(self._numbers[key], *said))
+        return self._numbers[key]

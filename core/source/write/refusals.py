@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import fields
 
-from ...dialect import Dialect, MoveWords
+from ...dialect import Dialect, MoveWords, OutputWords
 from ...errors import InputError
 from ...program.move import Move, MoveC
 from ...program.speed import Speed
-from ...program.target import PoseTarget
 from ...program.tool import FLANGE, WORLD
 from ...program.zone import Fine, Radius, Zone, kind_of, kind_word, zone_word
 
@@ -47,8 +46,7 @@ def check_said(move: Move, dialect: Dialect, name: str) -> None:
     if isinstance(move, MoveC) and move.orientation not in dialect.arc_orientations:
         only = " or ".join(sorted(f"ArcOrientation.{one.name}" for one in dialect.arc_orientations))
         raise InputError(f"along {name}'s arcs the tool turns otherwise: use {only}")
-    if isinstance(move.target, PoseTarget) and move.events and dialect.outputs is None:
-        raise InputError(f"{name} switches nothing on the way of a move (Move.events)")
+    _check_events(move, dialect.outputs, name)
 
 
 def _check_zone(zone: Zone, words: MoveWords, dialect: Dialect, name: str) -> None:
@@ -67,6 +65,20 @@ def _check_zone(zone: Zone, words: MoveWords, dialect: Dialect, name: str) -> No
         for part in _PARTS:
             if getattr(zone, part) != 0:
                 raise InputError(f"{name}'s zones have no Radius.{part}: set it to 0")
+
+
+def _check_events(move: Move, outputs: OutputWords | None, name: str) -> None:
+    if move.events and outputs is None:
+        raise InputError(f"{name} switches nothing on the way of a move (Move.events)")
+    if outputs is None:
+        return
+    if len(move.events) > outputs.most:
+        raise InputError(f"{name} does no more than {outputs.most:g} thing on the way of a move")
+    for event in move.events:
+        if not outputs.takes(event, move):
+            raise InputError(
+                f"{name} has no words for where, or when, {event.text!r} is done on the way"
+            )
 
 
 def _check_speed(speed: Speed, words: MoveWords, name: str) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from flyby_fanuc.dialect import CR
 from flyby_fanuc.plugin import fanuc
+from flyby_fanuc.words import CR
 from hypothesis import strategies as st
 
 from flyby.core.program.move import Move

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flyby_fanuc.configuration import FanucConfiguration
-from flyby_fanuc.dialect import CNT, CR
 from flyby_fanuc.plugin import fanuc
+from flyby_fanuc.words import CNT, CR
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -25,6 +24,7 @@ from flyby.core.program.zone import FINE, VendorZone
 from flyby.core.recording import RecordedRun, Recording
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.execution.answers import Answers
+from flyby.core.source.lines.postures import PostureLabel
 from flyby.core.translation.hand_out import check_driven
 from flyby.core.translation.translate import translate
 
@@ -79,7 +79,7 @@ def test_a_program_of_a_backup_is_read(backup: Path) -> None:
     assert moves[1].speed == Speed(tcp=0.25, acceleration_override=0.8)
     assert moves[1].zone == VendorZone(CNT, 0.5)
     assert moves[1].tool.tcp.position == (0.0, 0.0, 0.1)
-    assert moves[1].target.configuration == FanucConfiguration("NUT")
+    assert moves[1].target.configuration == PostureLabel("NUT", (0, 0, 0))
     assert moves[2].target.pose.position == pytest.approx((0.4, 0.0, 0.15))
     assert isinstance(moves[3], MoveC) and moves[3].via.pose.position[0] == pytest.approx(0.42)
     (event,) = moves[3].events

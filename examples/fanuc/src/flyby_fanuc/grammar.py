@@ -11,71 +11,65 @@ from flyby.core.errors import InputError
 from flyby.core.source.lines.expressions import Datum, Number, Spelling, parse
 from flyby.core.source.lines.forms import FormGrammar, Found
 from flyby.core.source.lines.moves import ArcPoints
+from flyby.core.source.lines.postures import PostureLabel
 from flyby.core.source.lines.program import Said
-from flyby.core.source.lines.statements import Assign, AssignAll, Line, NumberedPoint
+from flyby.core.source.lines.statements import Line, NumberedPoint
 from flyby.core.source.text.files import SourceText
 
-from .configuration import FanucConfiguration
-from .moves import MOTION, Place, drive
+from .moves import MOTION_LINE, Place, drive
 
-_SECTION = re.compile(
-    r"^[ \t]*/(PROG|ATTR|APPL|MN|POS|END)\b[^\r\n]*", re.MULTILINE | re.IGNORECASE
-)
+_SECTION = re.compile(r"^[ \t]*/(PROG|ATTR|APPL|MN|POS|END)\b[^\r\n]*", re.M | re.I)
 _STATEMENT = re.compile(
     r"^(?P<nested>[ ]{5,}+)?+[ \t]*+\d*+[ \t]*+:[ \t]*+"
     r"(?:(?P<silent>(?:!|//|--eg)[^\r\n]*+)|(?P<text>[^;\r\n]*+);)",
     re.MULTILINE,
 )
 _LINE = re.compile(r"[^\r\n]+")
+_IDLE = re.compile(r"\s*(?:---|\*|!|//|--eg|$)")
 _POSITION = re.compile(r"P\[[^\[\]\r\n]*+\]\s*+\{[^{}]*+\}\s*+;")
-_SILENT = (
-    re.compile(r"(?<=\[)()(GP\d+:)|()(\r?\n[ \t]+:)"),
-    re.compile(r"(\[(?:[^\[\]:\r\n]|\[[^\[\]:]*\])+)(:[^\]\r\n]{0,80}+)(?=\])"),
-)
-"""Groups of axes, continued lines, comments in brackets."""
+_COMMENT = re.compile(r"(\[(?:[^\[\]:\r\n]|\[[^\[\]:]*\])+)(:[^\]\r\n]{0,80}+)(?=\])")
+_SILENT = (re.compile(r"(?<=\[)()GP\d+:|()\r?\n[ \t]+:"), _COMMENT, _COMMENT)
+"""Groups of axes, continued lines, comments in brackets, and in those of their indices."""
 _GROUP = re.compile(r"GP1\s*:(?P<body>.*?)(?=GP\d|\}|$)", re.DOTALL | re.IGNORECASE)
 _IN_FRAMES = re.compile(r"UF\s*:\s*(\w+)\s*,\s*UT\s*:\s*(\w+)", re.IGNORECASE)
 _CONFIG = re.compile(r"CONFIG\s*:\s*'([NF])\s*([LR]\s+)?([UD])\s*([TB])\s*,([^']*)'", re.IGNORECASE)
 _COORDINATE = re.compile(r"\b([XYZWPRE]|J\d|E\d)\s*=\s*(-?\s*[\d.]+)\s*(mm|deg)", re.IGNORECASE)
-_TERM = re.compile(r"([-+]?)\s*((?:PR?|UFRAME|UTOOL)\[[^\]]*\])\s*")
 _WHOLE = ("PR", "UFRAME", "UTOOL")
 
 
+def quiet(text: str) -> str:
+    """A text with blanks for what says nothing in brackets and between lines."""
+    for silent in _SILENT:
+        text = silent.sub(lambda found: (found[1] or "").ljust(len(found[0])), text)
+    return text
+
+
 def lines(source: SourceText) -> Iterator[Line]:
-    """Statements and positions of a program, with blanks for comments in brackets.
+    """Statements and positions of a program.
 
     Raises:
         SourceError: a line is none.
     """
-    text = source.text
-    for silent in (*_SILENT, _SILENT[-1]):  # comments stand in indices, too
-        text = silent.sub(lambda found: (found[1] or "").ljust(len(found[0])), text)
-    quiet = SourceText(text, source.file)
-    sections = list(_SECTION.finditer(text))
-    ends = [section.start() for section in sections[1:]]
-    if not sections:
-        yield from _instructions(quiet, 0, len(text))
-    for section, end in zip(sections, [*ends, len(text)], strict=False):
-        begin, word = section.end(), section[1].upper()
-        if word == "PROG":
-            yield Line(quiet, section.start(), section.end())
-        elif word == "MN":
-            yield from _instructions(quiet, begin, end)
-        elif word == "POS":
-            for found in _POSITION.finditer(text, begin, end):
-                yield Line(quiet, *found.span())
+    read = SourceText(quiet(source.text), source.file)
+    sections = list(_SECTION.finditer(read.text))
+    starts = [(0, 0, "MN")] if not sections else [(s.start(), s.end(), s[1]) for s in sections]
+    ends = [start for start, _, _ in starts[1:]]
+    for (start, begin, word), end in zip(starts, [*ends, len(read.text)], strict=True):
+        if word.upper() == "PROG":
+            yield Line(read, start, begin)
+        elif word.upper() == "MN":
+            yield from _instructions(read, begin, end)
+        elif word.upper() == "POS":
+            yield from (Line(read, *p.span()) for p in _POSITION.finditer(read.text, begin, end))
 
 
 def _instructions(source: SourceText, at: int, end: int) -> Iterator[Line]:
     while (line := _LINE.search(source.text, at, end)) is not None:
         found = _STATEMENT.match(source.text, line.start(), end)
         at = line.end() if found is None else max(line.end(), found.end())
-        if found is None and not line[0].strip().startswith(("---", "*", "!", "//", "--eg")):
-            if not line[0].strip():
-                continue
-            raise source.error(
-                "a line number with ':' should begin it, and ';' should end it", line.start()
-            )
+        if found is None and not _IDLE.match(line[0]):
+            why = "a line number with ':' should begin it, and ';' should end it"
+            raise source.error(why, line.start())
         if found is not None and found["text"] and not found["nested"]:
             start = found.start("text")
             yield Line(source, start, start + len(found["text"].rstrip()))
@@ -93,11 +87,12 @@ class Grammar(FormGrammar):
     spelling = Spelling(names=True)
     driving = re.compile(r"[JLCAS]\s+PR?\[|IF\b", re.IGNORECASE)
     stopping = frozenset({"PAUSE"})
+    current = frozenset({"LPOS", "JPOS"})
     longest = 400
     forms: ClassVar = {
         "routine": r"/PROG\s+(?P<name>\S+).*",
         "position": _POSITION.pattern,
-        "motion": MOTION,
+        "motion": MOTION_LINE,
         "label": r"LBL\[\s*(?P<name>\d+)\s*\]",
         "jump": r"JMP\s+LBL\[\s*(?P<name>\d+)\s*\]",
         "call": r"CALL\s+(?P<name>[\w-]+)\s*(?:\((?P<arguments>.*)\))?",
@@ -117,9 +112,9 @@ class Grammar(FormGrammar):
         "wait.for": r"WAIT\s+(?P<condition>.+?)(?:\s*TIMEOUT\s*,.*)?",
         "assigned.held": r"(?P<target>UFRAME_NUM|UTOOL_NUM|OVERRIDE)(?:\[[^\]]*\])?\s*=\s*"
         r"(?P<value>[^%]+?)\s*%?",
-        "shifted": r"(?P<word>OFFSET|TOOL_OFFSET)\s+CONDITION\s+(?P<register>PR\[.*\])",
+        "assigned.offset": r"(?P<target>(?:TOOL_)?OFFSET)\s+CONDITION\s+PR\[(?P<value>.*)\]",
+        "pulsed": r"(?P<target>\w+\[[^=]*?\])\s*=\s*PULSE\s*,\s*(?P<time>[\d.]+)\s*sec",
         "harmless.pulse": r"\w+\[[^=]*?\]\s*=\s*PULSE\b.*",
-        "whole": r"(?P<target>(?:PR|UFRAME|UTOOL)\[[^,]*?\])\s*=\s*(?P<value>[^=].*)",
         "assigned": r"(?P<target>[A-Z]+\[[^=]*?\])\s*=\s*(?P<value>[^=].*)",
     }
 
@@ -136,46 +131,24 @@ class Grammar(FormGrammar):
         kind, middle = self._arc.add(found)
         return drive(self, line, found, kind, middle) if kind else None
 
-    def shifted(self, line: Line, found: Found) -> Said:
-        """``OFFSET CONDITION PR[1]``"""
-        index = self.datum(line, found, "register").index
-        assert index is not None
-        return Assign(line.span, Datum(line.span, found["word"].upper(), None), index)
-
-    def whole(self, line: Line, found: Found) -> Said:
-        """``PR[1]=P[2]+PR[3]``, ``PR[1]=LPOS``"""
-        target, said = self.datum(line, found, "target"), found["value"].strip()
-        if said.upper() in ("LPOS", "JPOS"):
-            return AssignAll(line.span, target, (), "where the running robot is")
-        terms, at = [], found.start("value")
-        for part in _TERM.finditer(found["value"]):
-            datum = parse(line.source, at + part.start(2), at + part.end(2))
-            assert isinstance(datum, Datum)
-            terms.append((-1.0 if part[1] == "-" else 1.0, datum))
-        if not terms:
-            raise InputError("positions and position registers should stand here")
-        return AssignAll(line.span, target, tuple(terms))
-
     def position(self, line: Line, found: Found) -> Said:
         """``P[1]{GP1: UF : 0, UT : 1, CONFIG : 'N U T, 0, 0, 0', X = 500.000 mm, …};``"""
         bracket = line.start + line.text.index("{")
         name = parse(line.source, line.start, bracket)
         assert isinstance(name, Datum)
-        body = line.source.text[bracket : line.end]
-        group = _GROUP.search(body)
-        own, offset = (body, 0) if group is None else (group["body"], group.start("body"))
+        group = _GROUP.search(line.source.text, bracket, line.end)
+        begin, end = (bracket, line.end) if group is None else group.span("body")
         values = {}
-        for one in _COORDINATE.finditer(own):
-            start = bracket + offset + one.start(2)
-            span = line.source.span(start, start + len(one[2]))
+        for one in _COORDINATE.finditer(line.source.text, begin, end):
+            span = line.source.span(*one.span(2))
             values[one[1].upper()] = Number(span, float(one[2].replace(" ", "")))
         joints = "J1" in values
         axes = [f"J{k}" for k in range(1, 7)] if joints else list("XYZWPR")
         if any(axis not in values for axis in axes):
             raise InputError("six coordinates should stand in it: X to R, or J1 to J6")
-        numbers = tuple(values[axis] for axis in axes)
+        place = _place(line.source.text[begin:end], joints)
         point = replace(name, span=line.span)
-        return NumberedPoint(line.span, point, numbers, _place(own, joints))
+        return NumberedPoint(line.span, point, tuple(values[axis] for axis in axes), place)
 
 
 def _place(own: str, joints: bool) -> Place:
@@ -185,5 +158,5 @@ def _place(own: str, joints: bool) -> Place:
     label = None
     if config is not None:
         turns = (*(int(t) for t in re.findall(r"-?\d+", config[5])), 0, 0, 0)[:3]
-        label = FanucConfiguration("".join((config[1], config[3], config[4])).upper(), turns)
+        label = PostureLabel("".join((config[1], config[3], config[4])).upper(), turns)
     return Place(joints, frame, tool, label)

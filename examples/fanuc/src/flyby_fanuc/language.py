@@ -2,33 +2,26 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from flyby.core.errors import InputError
 from flyby.core.language import Sources
-from flyby.core.program.move import Move
 from flyby.core.program.program import Program
-from flyby.core.program.speed import Speed
-from flyby.core.program.target import JointTarget, PoseTarget
-from flyby.core.program.zone import VendorZone
 from flyby.core.recording import Recording
 from flyby.core.robot.model import Robot
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.program import LineProgram
 from flyby.core.source.lines.statements import Body, Line, Numbers
-from flyby.core.source.patch.edits import Edit
-from flyby.core.source.patch.uses import MovePart, Use, UseKind
 from flyby.core.source.text.files import SourceText
 from flyby.core.source.write.options import WriterOptions
 
 from .dialect import TP
 from .grammar import Grammar, lines
-from .moves import XYZ, Place
+from .moves import Place
 from .record import USUAL_PERIOD, record, steps
-from .writer import Writer, amount, number, pace_of, program_name, remark, speed_text, zone_text
+from .words import MOTION, XYZ
+from .writer import Writer, program_name
 
 _VARIABLES = {
     "framevar.va": {"$MNUFRAME": "UFRAME", "$MNUTOOL": "UTOOL"},
@@ -38,6 +31,8 @@ _VARIABLE = re.compile(
     r"^\[[^\]\r\n]*\](?P<name>\$\w+)|^\s*\[1,(?P<index>\d+)\]\s*=(?P<value>[^\[]*)", re.M
 )
 _COORDINATE = re.compile(r"\b([XYZWPR])\s*:\s*(-?[\d.]+)")
+_REMARK = 32
+"""Characters of a remark."""
 
 
 class Language(LineLanguage):
@@ -51,6 +46,7 @@ class Language(LineLanguage):
     suffix = ".ls"
     dialect = TP
     positions = XYZ
+    motion = MOTION
     called = re.compile(r"\b(?:CALL|RUN)\s+([\w-]+)", re.IGNORECASE)
     always = tuple(_VARIABLES)
 
@@ -75,38 +71,12 @@ class Language(LineLanguage):
 
     def writer(self, options: WriterOptions) -> Writer:
         """See `LineLanguage`."""
-        return Writer(options)
+        return Writer()
 
     def comment(self, text: str) -> Iterator[str]:
         """See `LineLanguage`."""
-        return remark(text)
-
-    def number(self, value: float) -> str:
-        """See `LineLanguage`."""
-        short = math.isclose(value, round(value, 3), abs_tol=1e-10)
-        return amount(value) if short else number(value)
-
-    def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
-        """The numbers of a motion: a speed, a share of acceleration if it is stated; a zone."""
-        if isinstance(part, Speed):
-            found, share = pace_of(move, part), part.acceleration_override
-            shown = () if found is None else (found[1],)
-            return shown if share == 1.0 else (*shown, 100 * share)
-        if not isinstance(part, VendorZone):
-            return ()
-        sizes = (1.0, part.ratio) if part.ratio != 1.0 else (1.0,)
-        return tuple(part.size * s / part.kind.unit for s in sizes)
-
-    def own(self, use: Use) -> Iterator[Edit]:
-        """Other words at the move; a position of its own is not given."""
-        if isinstance(use.new, JointTarget | PoseTarget):
-            raise InputError("a position of its own is not put in: change it for all that use it")
-        if not isinstance(use.new, Speed):
-            yield Edit(use.origin.span, zone_text(use.new), use.index)
-            return
-        if use.new.acceleration_override != use.old.acceleration_override:
-            raise InputError("ACC is not put in or taken out in place: write the program anew")
-        yield Edit(use.origin.span, speed_text(use.move, use.new), use.index)
+        said = " ".join(text.removeprefix(TP.comment).replace(";", ",").split())
+        yield from (f"  !{said[at : at + _REMARK]}" for at in range(0, len(said), _REMARK))
 
     def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
         """See `flyby.core.language.Recorder`."""

@@ -7,9 +7,9 @@ from pathlib import Path
 from flyby.core.hookspec import VendorRegister, hookimpl
 from flyby.core.vendor import Vendor, lazy_motion, lazy_robots
 
-from .configuration import label
 from .dialect import TP
 from .language import Language
+from .words import LETTERS
 
 DATA = Path(__file__).parent / "data"
 
@@ -21,7 +21,7 @@ def fanuc() -> Vendor:
         name="fanuc",
         robots=lazy_robots(DATA.glob("robots/*.toml")),
         motion=lazy_motion(DATA / "motion.toml"),
-        label=label,
+        label=LETTERS.label,
         reader=language,
         writer=language,
         patcher=language,

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
+from importlib.resources import files
 
-from flyby.core.errors import InputError
 from flyby.core.language import Sources
-from flyby.core.recording import Recording, listed, routine
+from flyby.core.recording import Recording, cycles_in, listed, routine
 from flyby.core.robot.model import Robot
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.write.options import OpaqueStyle, WriterOptions
 
-from .writer import HEAD, TAIL, Writer, program_name
+from .writer import Writer, program_name, whole
 
 STEP = 0.008
 """s between positions that the controller computes."""
@@ -20,39 +19,6 @@ USUAL_PERIOD = 3 * STEP
 _SETTLE = "  WAIT .5(sec)"
 _RUN = 100
 """The register that says which run is logged."""
-_KAREL = """\
-PROGRAM flyby_log
--- Logs the joints every {ms} ms to a stick (UD1:): t in s, q1 to q6 in rad, J3 as displayed.
--- Translate it (ktrans) and load it beside the programs, which start it and end it by FLG[1].
-%NOLOCKGROUP
-%NOPAUSE = ERROR + COMMAND + TPENABLE
-VAR
-  log_file : FILE
-  joints : JOINTPOS
-  values : ARRAY[9] OF REAL
-  status, clock, k, run : INTEGER
-  is_real : BOOLEAN
-  share : REAL
-BEGIN
-{opened}
-  WRITE log_file ('t,q1,q2,q3,q4,q5,q6', CR)
-  clock = 0
-  CONNECT TIMER TO clock
-  FLG[1] = ON
-  WHILE FLG[1] DO
-    joints = CURJPOS(0, 0, 1)
-    CNV_JPOS_REL(joints, values, status)
-    WRITE log_file (clock / 1000.0::8::3)
-    FOR k = 1 TO 6 DO
-      WRITE log_file (',', values[k] * 0.01745329252::10::6)
-    ENDFOR
-    WRITE log_file (CR)
-    DELAY {ms}
-  ENDWHILE
-  CLOSE FILE log_file
-  DISCONNECT TIMER clock
-END flyby_log
-"""
 
 
 def record(recording: Recording, robot: Robot, period: float, language: LineLanguage) -> Sources:
@@ -62,27 +28,26 @@ def record(recording: Recording, robot: Robot, period: float, language: LineLang
         InputError: the period is no whole number of steps of the controller.
         MotionError: TP cannot say a move.
     """
-    log = logger(recording, robot, period)
+    cycles_in(period, STEP, robot.name)
+    logger = {"flyby_log.kl": _logger(recording, period)}
     name = program_name(recording.name)
     if recording.alone:
-        return {f"{name}.ls": _logged(recording, 0, name, language), "flyby_log.kl": log}
+        return {f"{name}.ls": _logged(recording, 0, name, language), **logger}
     names = [program_name(routine(k)) for k, _ in enumerate(recording.runs, 1)]
     called = []
     for number, run in enumerate(names, 1):
         called += ["  PAUSE"] if number in recording.jogged else []
         called.append(f"  CALL {run}")
-    numbered = "".join(f"{k:>4}:{line} ;\n" for k, line in enumerate(called, 1))
-    made = {f"{name}.ls": f"{HEAD.format(name=name)}{numbered}/POS\n{TAIL}"}
+    made = {f"{name}.ls": whole(name, called, [])}
     made |= {f"{run}.ls": _logged(recording, k, run, language) for k, run in enumerate(names)}
-    return {**made, "flyby_log.kl": log}
+    return {**made, **logger}
 
 
 def _logged(recording: Recording, index: int, name: str, language: LineLanguage) -> str:
     which = () if recording.alone else (f"  R[{_RUN}]={index + 1}",)
-    before, after = (*which, "  RUN FLYBY_LOG", _SETTLE), (_SETTLE, "  FLG[1]=OFF")
-    quiet = WriterOptions(OpaqueStyle.COMMENT)
-    writer = Writer(quiet, before, after)
-    return language.written(recording.runs[index].program, name, quiet, writer)
+    writer = Writer((*which, "  RUN FLYBY_LOG", _SETTLE), (_SETTLE, "  FLG[1]=OFF"))
+    program, quiet = recording.runs[index].program, WriterOptions(OpaqueStyle.COMMENT)
+    return language.written(program, name, quiet, writer)
 
 
 def steps(recording: Recording) -> list[str]:
@@ -99,22 +64,12 @@ def steps(recording: Recording) -> list[str]:
     return made
 
 
-def logger(recording: Recording, robot: Robot, period: float) -> str:
-    """The KAREL program.
-
-    Raises:
-        InputError: the period is no whole number of steps of the controller.
-    """
-    steps = period / STEP if math.isfinite(period) else 0.0
-    if round(steps) < 1 or abs(steps - round(steps)) > 1e-6 * steps:
-        raise InputError(
-            f"{robot.name} has new positions every {STEP:g} s: a log has that period or a whole "
-            f"multiple of it, not {period:g} s"
-        )
-    files = [f"OPEN FILE log_file ('RW', 'UD1:{run.log}')" for run in recording.runs]
-    opened = [f"  {files[0]}"]
+def _logger(recording: Recording, period: float) -> str:
+    """The KAREL program."""
+    opened = [f"OPEN FILE log_file ('RW', 'UD1:{run.log}')" for run in recording.runs]
     if not recording.alone:
-        cases = [f"    CASE ({k}): {file}" for k, file in enumerate(files, 1)]
-        read = f"  GET_REG({_RUN}, is_real, run, share, status)"
-        opened = [read, "  SELECT run OF", *cases, "  ENDSELECT"]
-    return _KAREL.format(ms=round(1000 * period), opened="\n".join(opened))
+        cases = [f"  CASE ({k}): {file}" for k, file in enumerate(opened, 1)]
+        read = f"GET_REG({_RUN}, is_real, run, share, status)"
+        opened = [read, "SELECT run OF", *cases, "ENDSELECT"]
+    text = files(__package__).joinpath("data/flyby_log.kl").read_text("utf-8")
+    return text.format(ms=round(1000 * period), opened="\n".join(f"  {one}" for one in opened))

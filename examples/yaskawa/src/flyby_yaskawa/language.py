@@ -11,19 +11,20 @@ from typing import ClassVar
 from flyby.core.dialect import Dialect, MoveWords, Orientation
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.arc_orientation import ArcOrientation
-from flyby.core.program.move import Move, MoveC, MoveJ, Wait
+from flyby.core.program.move import Move, Wait
 from flyby.core.program.program import Program
-from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, Target
-from flyby.core.program.tool import FLANGE, Tool
-from flyby.core.program.zone import FINE, VendorZone, Zone, ZoneKind
-from flyby.core.source.lines.amounts import Amount, speed_of, stated
+from flyby.core.program.zone import ZoneKind
+from flyby.core.source.lines.amounts import Amount
 from flyby.core.source.lines.expressions import Datum, Number, Operation, Spelling, parse_all
 from flyby.core.source.lines.forms import FormGrammar, Found
+from flyby.core.source.lines.frames import FrameRegisters
 from flyby.core.source.lines.language import LineLanguage
-from flyby.core.source.lines.moves import ArcPoints, made_move
+from flyby.core.source.lines.motions import MotionWords
+from flyby.core.source.lines.moves import ArcPoints, made_move, said
 from flyby.core.source.lines.positions import PositionForm
 from flyby.core.source.lines.program import Said
+from flyby.core.source.lines.signals import Signals
 from flyby.core.source.lines.statements import (
     Assign,
     Build,
@@ -34,43 +35,23 @@ from flyby.core.source.lines.statements import (
     Operand,
     Situation,
 )
-from flyby.core.source.patch.uses import MovePart, UseKind
 from flyby.core.source.text.numerals import nine_decimals
+from flyby.core.source.write.numbering import PointNumbers
 from flyby.core.source.write.options import WriterOptions
 
 LEVELS = (0.0125, 0.025, 0.05, 0.1)
 """m, of PL=1 to PL=4 as operator's manuals of the DX controllers have them."""
 PL = ZoneKind("PL", None, largest=LEVELS[-1], unit=1e-3, sizes=LEVELS)
-_LINE_WORDS = MoveWords(
-    (PL,),
-    frozenset({"tcp", "reorientation", "acceleration_override"}),
-    exclusive=frozenset({"tcp", "reorientation"}),
-    configurations=False,
+MOTION = MotionWords(
+    joint={"VJ": Amount("joint_fraction", 0.01)},
+    line={"V": Amount("tcp", 1e-3), "VR": Amount("reorientation", math.radians(1))},
+    zones={"PL": PL},
+    stop=None,
+    speed="{unit}={number}",
+    zone="{word}={numbers}",
 )
-SPEAKS = Dialect(
-    joint=MoveWords(
-        (PL,),
-        frozenset({"joint_fraction", "acceleration_override"}),
-        frozenset({"joint_fraction"}),
-        configurations=False,
-    ),
-    line=_LINE_WORDS,
-    arc=_LINE_WORDS,
-    arc_orientations=frozenset({ArcOrientation.FIXED_FRAME}),
-    pace="joint_fraction",
-    comment="'",
-    tools=False,
-    work_objects=False,
-    loads=False,
-    stationary_tools=False,
-    external_axes=False,
-    orientation=Orientation.EULER_ZYX,
-    fastest=1.5,
-    most={"acceleration_override": 1.0},
-)
-JOINT = {"VJ": Amount("joint_fraction", 0.01)}
-LINE = {"V": Amount("tcp", 1e-3), "VR": Amount("reorientation", math.radians(1))}
 XYZ = PositionForm(Orientation.EULER_ZYX, last_first=True)
+FRAMES = FrameRegisters(XYZ, "TOOL")
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +77,8 @@ class Grammar(FormGrammar):
         "nothing": r"'.*|NOP",
         "position": r"(?P<name>[CP])(?P<number>\d+)=(?P<values>[-+.\d, ]+)",
         "motion": r"MOV(?P<kind>[JLC])\s+(?P<point>[CP]\d+)"
-        r"(?:\s+(?P<unit>VJ|V|VR)=(?P<speed>[\d.]+))?"
-        r"(?:\s+PL=(?P<level>\d))?(?:\s+ACC=(?P<acc>\d+))?(?:\s+DEC=(?P=acc))?\s*",
+        r"(?:\s+(?P<pace>(?P<unit>VJ|V|VR)=(?P<speed>[\d.]+)))?"
+        r"(?:\s+(?P<zone>PL=(?P<level>\d)))?(?:\s+ACC=(?P<acc>\d+))?(?:\s+DEC=(?P=acc))?\s*",
         "when": r"(?P<action>(?!MOV).*?)\s+IF\s+(?P<condition>.*)",
         "label": r"\*(?P<name>\S+)",
         "jump": r"JUMP\s+\*(?P<name>\S+)",
@@ -152,42 +133,29 @@ class Grammar(FormGrammar):
             kind, middle = self._arc.add(point)
         if not kind:
             return None
-        pace = self.numbers_at(line, found, "speed" if found["speed"] else "point", "speed", "acc")
-        zone = self.numbers_at(line, found, "level" if found["level"] else "point", "level")
+        pace = self.numbers_at(line, found, "pace", "speed", "acc")
+        zone = self.numbers_at(line, found, "zone", "level")
         return Drive(line.span, point, pace, zone, _build(kind, found), middle)
 
 
 def _build(kind: str, found: Found) -> Build:
     def build(target: Numbers, speed: Numbers, zone: Numbers, via: Numbers, now: Situation) -> Move:
-        share = speed[-1] / 100 if found["acc"] else 1.0
-        pace = Speed(acceleration_override=share)
-        if found["unit"]:
-            pace = speed_of(found["unit"], speed[0], JOINT | LINE, share)
-        goal, tool = _target(target, now)
-        through = _target(via, now)[0] if kind == "C" else None
-        return made_move(kind, goal, pace, _zone(zone), tool, via=through)
+        goal, through = _target(target, now), _target(via, now) if kind == "C" else None
+        pace = MOTION.speed_of(kind, found["unit"], speed, bool(found["acc"]))
+        tool = FRAMES.tool_of(target.kind.tool, now)
+        return made_move(kind, goal, pace, MOTION.zone_of("PL", zone), tool, via=through)
 
     return build
 
 
-def _zone(numbers: Numbers) -> Zone:
-    """Without a PL the robot is taken to stop."""
-    level = int(numbers[0]) if numbers else 0
-    if level > len(LEVELS):
-        raise InputError(f"how far PL={level} reaches is not published: PL=0 to {len(LEVELS)} are")
-    return VendorZone(PL, LEVELS[level - 1]) if level else FINE
-
-
-def _target(numbers: Numbers, now: Situation) -> tuple[Target, Tool]:
-    place, tool = numbers.kind, FLANGE
-    if place.tool:
-        tool = Tool(f"TOOL {place.tool}", XYZ.pose(now.vector("TOOL", place.tool)))
+def _target(numbers: Numbers, now: Situation) -> Target:
+    place = numbers.kind
     if place.type == "PULSE":
         now.computed("target")
-        return XYZ.target(_degrees(numbers, now), True), tool
+        return XYZ.target(_degrees(numbers, now), True)
     if place.type not in ("ANGLE", "BASE", "ROBOT"):
         raise InputError(f"positions of type {place.type or '(none)'} are not read: use BASE")
-    return XYZ.target(numbers, place.type == "ANGLE"), tool
+    return XYZ.target(numbers, place.type == "ANGLE")
 
 
 def _degrees(pulses: Numbers, now: Situation) -> list[float]:
@@ -202,46 +170,68 @@ def _degrees(pulses: Numbers, now: Situation) -> list[float]:
     return [a / b for a, b in zip(pulses, rates, strict=True)]
 
 
-def _level(zone: Zone) -> int:
-    if not isinstance(zone, VendorZone):
-        return 0
-    if zone.size not in LEVELS:
-        raise InputError(f"PL has {len(LEVELS)} sizes, and {1000 * zone.size:g} mm is none of them")
-    return LEVELS.index(zone.size) + 1
+_LINE_WORDS = MoveWords(
+    (PL,),
+    frozenset({"tcp", "reorientation", "acceleration_override"}),
+    exclusive=frozenset({"tcp", "reorientation"}),
+    configurations=False,
+)
+SPEAKS = Dialect(
+    joint=MoveWords(
+        (PL,),
+        frozenset({"joint_fraction", "acceleration_override"}),
+        frozenset({"joint_fraction"}),
+        configurations=False,
+    ),
+    line=_LINE_WORDS,
+    arc=_LINE_WORDS,
+    arc_orientations=frozenset({ArcOrientation.FIXED_FRAME}),
+    pace="joint_fraction",
+    comment="'",
+    tools=False,
+    work_objects=False,
+    loads=False,
+    stationary_tools=False,
+    external_axes=False,
+    orientation=Orientation.EULER_ZYX,
+    fastest=1.5,
+    most={"acceleration_override": 1.0},
+    signals=Signals(
+        Grammar,
+        digital=("OT",),
+        inputs=("IN",),
+        written="{word}#({number})",
+        switch="DOUT {signal} {value}",
+    ).dialect(),
+)
 
 
-def _pace(move: Move, speed: Speed) -> tuple[str, float] | None:
-    return stated(speed, JOINT if isinstance(move, MoveJ) else LINE)
+def _position(number: int, target: Target) -> str:
+    joints = isinstance(target, JointTarget)
+    head = "///POSTYPE ANGLE\n///ANGLE" if joints else "///POSTYPE BASE\n///RECTAN"
+    return f"{head}\nC{number:05}={','.join(map(nine_decimals, XYZ.numbers(target)))}"
 
 
 @dataclass
 class Writer:
     """Writes one job."""
 
-    positions: list[str] = field(default_factory=list)
+    _positions: PointNumbers = field(default_factory=lambda: PointNumbers(_position, first=0))
+    _last: int | None = None
 
     def move(self, move: Move) -> Iterator[str]:
-        """The instructions of a move."""
-        said = [f"PL={_level(move.zone)}"]
-        if (pace := _pace(move, move.speed)) is not None:
-            said.insert(0, f"{pace[0]}={nine_decimals(pace[1])}")
+        """The instructions of a move; without a PL the robot is taken to stop."""
+        words = f"{MOTION.speed_text(move)} {MOTION.zone_text(move)}".strip()
         share = nine_decimals(100 * move.speed.acceleration_override)
-        said += [] if share == "100" else [f"ACC={share} DEC={share}"]
-        words = " ".join(said)
-        if isinstance(move, MoveC):
-            if not self.positions:
+        words += "" if share == "100" else f" ACC={share} DEC={share}"
+        kind, targets = said(move)
+        numbers = [self._positions.of(target) for target in targets]
+        if kind == "C":
+            if self._last is None:
                 raise InputError("an arc begins where a motion before it ends: state a start")
-            yield f"MOVC C{len(self.positions) - 1:05} {words}"
-            yield f"MOVC {self._name(move.via)} {words}"
-        yield f"MOV{type(move).__name__[-1]} {self._name(move.target)} {words}"
-
-    def _name(self, target: Target) -> str:
-        joints = isinstance(target, JointTarget)
-        head = "///POSTYPE ANGLE\n///ANGLE" if joints else "///POSTYPE BASE\n///RECTAN"
-        name = f"C{len(self.positions):05}"
-        numbers = ",".join(map(nine_decimals, XYZ.numbers(target)))
-        self.positions.append(f"{head}\n{name}={numbers}")
-        return name
+            numbers.insert(0, self._last)
+        self._last = numbers[-1]
+        yield from (f"MOV{kind} C{number:05} {words}" for number in numbers)
 
     def wait(self, wait: Wait) -> str:
         """The instruction of a wait."""
@@ -249,8 +239,9 @@ class Writer:
 
     def text(self, name: str, lines: list[str]) -> str:
         """The whole job."""
-        head = f"/JOB\n//NAME {name}\n//POS\n///NPOS {len(self.positions)},0,0,0,0,0\n///TOOL 0\n"
-        body = [*self.positions, "//INST", "///ATTR SC,RW", "///GROUP1 RB1", "NOP", *lines]
+        count, positions = len(self._positions.texts), self._positions.texts
+        head = f"/JOB\n//NAME {name}\n//POS\n///NPOS {count},0,0,0,0,0\n///TOOL 0\n"
+        body = [*positions, "//INST", "///ATTR SC,RW", "///GROUP1 RB1", "NOP", *lines]
         return head + "\n".join([*body, "END", ""])
 
 
@@ -261,6 +252,7 @@ class Language(LineLanguage):
     suffix = ".jbi"
     dialect = SPEAKS
     positions = XYZ
+    motion = MOTION
     called = re.compile(r"\bCALL\s+JOB:([\w-]+)")
 
     def grammar(self) -> Grammar:
@@ -274,11 +266,3 @@ class Language(LineLanguage):
     def file_name(self, program: Program) -> str:
         """A name of 32 signs at most."""
         return super().file_name(program).upper()[:32]
-
-    def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
-        """The numbers at a motion: a speed, and a share of acceleration if stated; a level."""
-        if not isinstance(part, Speed):
-            return (float(_level(part)),)
-        pace, share = _pace(move, part), part.acceleration_override
-        shown = () if pace is None else (pace[1],)
-        return shown if share == 1.0 else (*shown, 100 * share)

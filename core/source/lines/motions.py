@@ -1,0 +1,155 @@
+"""What motions say beside where they go: a speed with its unit, a zone, a share of acceleration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from ...errors import InputError
+from ...program.move import Move, MoveJ
+from ...program.speed import Speed
+from ...program.target import JointTarget, PoseTarget
+from ...program.zone import FINE, VendorZone, Zone, ZoneKind
+from ..patch.edits import Edit
+from ..patch.uses import MovePart, Use
+from ..text.numerals import nine_decimals
+from .amounts import Units, speed_of, stated
+
+
+@dataclass(frozen=True)
+class MotionWords:
+    """How motions say their speed and zone.
+
+    Args:
+        joint, line: what the number of a speed is in joint moves, and in lines and arcs, by its
+            unit; the first that a move states is written.
+        zones: kinds of zone by word.
+        stop: what stands for none; None where a zone of size 0 does.
+        unstated: what stands for a speed of which a move states nothing.
+        speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
+        number: a number as a motion has it.
+    """
+
+    joint: Units
+    line: Units
+    zones: Mapping[str, ZoneKind]
+    stop: str | None = "FINE"
+    unstated: str = ""
+    speed: str = "{number}{unit}"
+    zone: str = "{word}{numbers}"
+    number: Callable[[float], str] = nine_decimals
+
+    # ----------------------------------------------------------------------- reading
+
+    def speed_of(
+        self,
+        kind: str,
+        unit: str | None,
+        numbers: Sequence[float],
+        share: bool = False,
+        override: float = 1.0,
+    ) -> Speed:
+        """The speed of the numbers of a motion.
+
+        Args:
+            kind: ``J``, ``L`` or ``C``.
+            unit: of the first number; None if no speed is stated.
+            share: whether the last number is a share of acceleration, %.
+            override: that is laid on the speed, and makes durations longer.
+
+        Raises:
+            InputError: such moves have no speeds in this unit.
+        """
+        acceleration = numbers[-1] / 100 if share else 1.0
+        if unit is None:
+            return Speed(acceleration_override=acceleration)
+        units = self.joint if kind == "J" else self.line
+        if unit.lower() not in units and unit not in units:
+            raise InputError(f"the speed of such a motion is no number of {unit}")
+        unit = unit if unit in units else unit.lower()
+        longer = units[unit].name == "duration"
+        number = numbers[0] / override if longer else numbers[0] * override
+        return speed_of(unit, number, units, acceleration)
+
+    def zone_of(self, word: str, numbers: Sequence[float]) -> Zone:
+        """The zone of its word and numbers.
+
+        Raises:
+            InputError: there is none of this size.
+        """
+        if not numbers or numbers[0] == 0:
+            return FINE
+        kind = self.zones[word.upper()]
+        if kind.sizes:
+            level = int(numbers[0])
+            if not 1 <= level <= len(kind.sizes):
+                known = f"{kind.word}=0 to {len(kind.sizes)} are"
+                raise InputError(f"how far {kind.word}={level} reaches is not published: {known}")
+            return VendorZone(kind, kind.sizes[level - 1])
+        ratio = numbers[1] / numbers[0] if len(numbers) > 1 else 1.0
+        return VendorZone(kind, numbers[0] / (1 / kind.unit), ratio)
+
+    # ---------------------------------------------------------- writing and patching
+
+    def numbers(self, part: MovePart, move: Move) -> tuple[float, ...]:
+        """The numbers of a speed or zone, in the order in which a motion has them.
+
+        Raises:
+            InputError: there is no zone of this size.
+        """
+        if isinstance(part, Speed):
+            found, share = self._stated(move, part), part.acceleration_override
+            shown = () if found is None else (found[1],)
+            return shown if share == 1.0 else (*shown, 100 * share)
+        if not isinstance(part, VendorZone):
+            return () if self.stop is not None else (0.0,)
+        if part.kind.sizes:
+            if part.size not in part.kind.sizes:
+                told = f"{part.kind.word} has {len(part.kind.sizes)} sizes"
+                raise InputError(f"{told}, and {1000 * part.size:g} mm is none of them")
+            return (1.0 + part.kind.sizes.index(part.size),)
+        size = part.size / part.kind.unit
+        return (size,) if part.ratio == 1.0 else (size, size * part.ratio)
+
+    def speed_text(self, move: Move) -> str:
+        """The words of a move's speed, without its share of acceleration."""
+        found = self._stated(move, move.speed)
+        if found is None:
+            return self.unstated
+        return self.speed.format(unit=found[0], number=self.number(found[1]))
+
+    def zone_text(self, move: Move) -> str:
+        """The words of a move's zone."""
+        numbers = self.numbers(move.zone, move)
+        if not numbers:
+            assert self.stop is not None
+            return self.stop
+        kinds = {kind: word for word, kind in self.zones.items()}
+        first = next(iter(self.zones))
+        word = kinds[move.zone.kind] if isinstance(move.zone, VendorZone) else first
+        return self.zone.format(word=word, numbers=",".join(map(self.number, numbers)))
+
+    def own(self, use: Use) -> Iterator[Edit]:
+        """Other words at the move itself.
+
+        Raises:
+            InputError: the move says nothing of this part, or would have to say more.
+        """
+        if isinstance(use.new, JointTarget | PoseTarget):
+            raise InputError(
+                "there is no number of its own to change, and a position of its own is not put "
+                "in: change it for all that use it, or write the program anew"
+            )
+        if use.origin.span == use.statement:
+            raise InputError("the motion says nothing of it, and nothing is put in: write it anew")
+        if not isinstance(use.old, Speed):
+            yield Edit(use.origin.span, self.zone_text(use.move), use.index)
+            return
+        old, new = (speed.acceleration_override for speed in (use.old, use.move.speed))
+        if not math.isclose(old, new, rel_tol=1e-12):
+            raise InputError("no share of acceleration is put in or taken out: write it anew")
+        yield Edit(use.origin.span, self.speed_text(use.move), use.index)
+
+    def _stated(self, move: Move, speed: Speed) -> tuple[str, float] | None:
+        return stated(speed, self.joint if isinstance(move, MoveJ) else self.line)
