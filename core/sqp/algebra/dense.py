@@ -77,7 +77,9 @@ class _Reduced:
 
     def __init__(self, P: FloatArray, B: FloatArray, delta: float) -> None:
         self._P, self._B = P, B
-        self._curvature = Cholesky(P + delta * np.eye(len(P)))
+        shifted = P.copy(order="F")
+        shifted[np.diag_indices(len(P))] += delta
+        self._curvature = Cholesky(shifted)
         self._spread = self._curvature.solve(B.T)
         self._rows = Cholesky(B @ self._spread + delta * np.eye(len(B))) if len(B) else None
 
@@ -128,7 +130,7 @@ def saddle(
     B = across[active].toarray()
     delta = _REGULARISATION * max(1.0, P.largest())
     try:
-        reduced = _Reduced(full[np.ix_(free, free)], B, delta)
+        reduced = _Reduced(full if len(free) == len(q) else full[np.ix_(free, free)], B, delta)
     except LinAlgError:
         return None
     found = reduced.solve(-(q + P @ d)[free], (target - A @ d)[active])

@@ -193,16 +193,16 @@ class Deposition:
             """The columns that some points have entries in, and their product."""
             live = self._live(guns, trajectory.flow, first, last)
             near = np.union1d(live, live + 1)
-            place, column = np.full(waypoints, -1), np.full(trajectory.segments, -1)
+            place, row = np.full(waypoints, -1), np.full(trajectory.segments, -1)
             place[near] = 5 * np.arange(len(near))
-            column[live] = 5 * len(near) + np.arange(len(live))
+            row[live] = 5 * len(near) + np.arange(len(live))
             points = self._order[self._points(first, last)]
-            rows = np.zeros((len(points), 5 * len(near) + len(live)))
-            fill_jacobian(self._surface, guns, amount, turns, place, column, first, last, rows)
-            rows[:, 5 * len(near) :] *= trajectory.flow[live]
-            rows *= roots[points, None]
+            rows = np.zeros((5 * len(near) + len(live), len(points)))
+            fill_jacobian(self._surface, guns, amount, turns, place, row, first, last, rows)
+            rows[5 * len(near) :] *= trajectory.flow[live, None]
+            rows *= roots[points]
             columns = (5 * near[:, None] + np.arange(5)).ravel()
-            return np.concatenate((columns, 5 * waypoints + live)), rows.T @ rows
+            return np.concatenate((columns, 5 * waypoints + live)), rows @ rows.T
 
         found = np.zeros((5 * waypoints + trajectory.segments,) * 2)
         for columns, product in self._pieces(squared):

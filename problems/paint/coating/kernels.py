@@ -193,13 +193,14 @@ def profile(brush: Brush, r: float) -> float:
 
 
 @compiled
-def _slope_over_radius(brush: Brush, r: float) -> float:
-    """f'(r) / r within the rim, which has a value at the centre too."""
+def _profile_and_slope(brush: Brush, r: float) -> tuple[float, float]:
+    """f(r) and f'(r) / r within the rim; the latter has a value at the centre too."""
     e, i = brush.coefficients, _piece(brush, r)
     t = r - brush.knots[i]
+    f = e[i, 0] + t * (e[i, 1] + t * (e[i, 2] + t * e[i, 3]))
     if r > _CENTRE * brush.knots[-1]:
-        return float((e[i, 1] + t * (2.0 * e[i, 2] + 3.0 * t * e[i, 3])) / r)
-    return float(2.0 * e[0, 2])
+        return f, (e[i, 1] + t * (2.0 * e[i, 2] + 3.0 * t * e[i, 3])) / r
+    return f, 2.0 * e[0, 2]
 
 
 @compiled
@@ -211,14 +212,14 @@ def slopes_at(surface: Surface, gun: SprayPoint, k: int, r: float) -> Slopes:
     """
     cone = surface.brush.cone
     normal = load_row(surface.blocks.normals, k)
-    f = profile(surface.brush, r)
-    slope = _slope_over_radius(surface.brush, r)
+    f, slope = _profile_and_slope(surface.brush, r)
     v = subtract(load_row(surface.blocks.points, k), gun.source)
     s, vv, c = dot(v, gun.nozzle), dot(v, v), -dot(v, normal)
-    inverse = 1.0 / (s * s)
+    near = 1.0 / s
+    inverse = near * near
     # dq by v is v_v v + v_a a + v_h h; by a, with v held, a_v v + a_h h.
-    v_v, v_a, v_h = 2.0 * inverse, -2.0 * vv * inverse / s, 0.0
-    a_v, a_h = -2.0 * vv * inverse / s, 0.0
+    v_v, v_a, v_h = 2.0 * inverse, -2.0 * vv * inverse * near, 0.0
+    a_v, a_h = v_a, 0.0
     if cone.across > 1.0:
         leaning = dot(gun.fan, gun.nozzle)
         square = 1.0 - leaning * leaning
@@ -227,13 +228,14 @@ def slopes_at(surface: Surface, gun: SprayPoint, k: int, r: float) -> Slopes:
         rest = 1.0 - cone.across
         first = 2.0 * w * inverse / square
         v_v *= cone.across
-        v_a = cone.across * v_a - rest * (first * leaning + 2.0 * along / s)
+        v_a = cone.across * v_a - rest * (first * leaning + 2.0 * along * near)
         v_h = rest * first
-        a_v = cone.across * a_v - rest * (first * leaning + 2.0 * along / s)
+        a_v = v_a
         a_h = rest * (2.0 * along * leaning / square - first * s)
-    by_c = f * cone.reach * cone.reach * inverse / s
-    by_q = 0.5 * slope * cone.reach**4 * c * inverse / s
-    by_s = -3.0 * by_c * c / s
+    spread = cone.reach * cone.reach * inverse * near
+    by_c = f * spread
+    by_q = 0.5 * slope * cone.reach * cone.reach * c * spread
+    by_s = -3.0 * by_c * c * near
     by_v, by_a, by_h = by_q * v_v, by_q * v_a + by_s, by_q * v_h
     turn_v, turn_h = by_q * a_v + by_s, by_q * a_h
     by_point = add(add(scale(by_v, v), scale(by_a, gun.nozzle)), scale(by_h, gun.fan))

@@ -10,6 +10,8 @@ from ....core.arrays import BoolArray, FloatArray, IntArray
 from ....core.robot.kinematics.vectors import ZERO, Vector, add, dot, load_row, scale
 from .kernels import (
     Guns,
+    Slopes,
+    SprayPoint,
     Surface,
     across,
     compiled,
@@ -126,13 +128,14 @@ def add_adjoint(
 
 @compiled
 def _add_waypoint(
-    rows: FloatArray, n: int, at: int, share: float, pull: Vector, twist: Vector, turns: FloatArray
+    rows: FloatArray, at: int, n: int, share: float, slopes: Slopes, turns: tuple[Vector, Vector]
 ) -> None:
-    """Add derivatives by a waypoint's position and two angles to row n, from column ``at`` on."""
-    for j in range(3):
-        rows[n, at + j] += share * pull[j]
-    for j in range(2):
-        rows[n, at + 3 + j] += share * dot(twist, load_row(turns, j))
+    """Add derivatives by a waypoint's position and two angles to column n, from row ``at`` on."""
+    rows[at, n] += share * slopes.tcp[0]
+    rows[at + 1, n] += share * slopes.tcp[1]
+    rows[at + 2, n] += share * slopes.tcp[2]
+    rows[at + 3, n] += share * dot(slopes.nozzle, turns[0])
+    rows[at + 4, n] += share * dot(slopes.nozzle, turns[1])
 
 
 @compiled
@@ -142,7 +145,7 @@ def fill_jacobian(
     amount: FloatArray,
     turns: FloatArray,
     place: IntArray,
-    column: IntArray,
+    row: IntArray,
     first: int,
     last: int,
     rows: FloatArray,
@@ -151,18 +154,23 @@ def fill_jacobian(
 
     Args:
         turns: (W, 2, 3) derivatives of each waypoint's direction by its two angles.
-        place: (W,) first of the five columns (position, angles) of a waypoint.
-        column: (S,) of each segment's amount; -1 for segments that are left out.
-        rows: (points of the groups, columns).
+        place: (W,) first of the five rows (position, angles) of a waypoint.
+        row: (S,) of each segment's amount; -1 for segments that are left out.
+        rows: (rows, points of the groups); points in a row, since they are worked through in turn.
     """
     starts = surface.blocks.starts
     for p in range(len(guns.segment)):
         i = guns.segment[p]
-        if column[i] < 0:
+        if row[i] < 0:
             continue
         gun = gun_at(surface.brush.cone, guns, p)
         weight, ahead = guns.weight[p], guns.share[p]
         front, rear = ahead * weight * amount[i], (1.0 - ahead) * weight * amount[i]
+        own, ends = row[i], (place[i], place[i + 1])
+        # What a turn does to a unit vector is symmetric: it is done once to the turns instead of to
+        # each point's slopes.
+        behind = _across_both(gun, guns.length[p], turns[i])
+        before = _across_both(gun, guns.length[p], turns[i + 1])
         for g in range(first, last):
             if not meets(surface, gun, g):
                 continue
@@ -172,10 +180,16 @@ def fill_jacobian(
                     continue
                 slopes = slopes_at(surface, gun, k, r)
                 n = k - starts[first]
-                twist = across(gun, guns.length[p], slopes.nozzle)
-                rows[n, column[i]] += weight * slopes.value
-                _add_waypoint(rows, n, place[i], rear, slopes.tcp, twist, turns[i])
-                _add_waypoint(rows, n, place[i + 1], front, slopes.tcp, twist, turns[i + 1])
+                rows[own, n] += weight * slopes.value
+                _add_waypoint(rows, ends[0], n, rear, slopes, behind)
+                _add_waypoint(rows, ends[1], n, front, slopes, before)
+
+
+@compiled
+def _across_both(gun: SprayPoint, length: float, turns: FloatArray) -> tuple[Vector, Vector]:
+    """What two turns (2, 3) of the interpolated direction change of the unit vector."""
+    first = across(gun, length, load_row(turns, 0))
+    return first, across(gun, length, load_row(turns, 1))
 
 
 @compiled

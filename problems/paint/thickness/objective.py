@@ -21,6 +21,9 @@ from .options import PaintWeights
 from .path_cost import PathCost
 from .variables import ThicknessVariables
 
+_REMEMBERED = 3
+"""Points whose coats are kept: iterates are judged between the solver's own calls."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
@@ -62,7 +65,7 @@ class PaintObjective:
         nominal = scenarios[0].deposition.footprint
         self._paint = weights.paint * nominal.rate / (samples.area * target)
         self._path = PathCost(weights, variables.waypoints)
-        self._seen: tuple[bytes, PaintTrajectory, list[FloatArray]] | None = None
+        self._seen: dict[bytes, tuple[PaintTrajectory, list[FloatArray]]] = {}
 
     def value(self, z: FloatArray) -> float:
         """J."""
@@ -95,8 +98,7 @@ class PaintObjective:
     def curvature(self, z: FloatArray) -> FloatArray:
         """The Gauss–Newton matrix (n, n): positive semidefinite, without second derivatives of
         thickness and nozzle."""
-        trajectory = self._errors(z)[0]
-        turns = self._variables.turns(z)
+        trajectory, turns = self._variables.trajectory(z), self._variables.turns(z)
         path = self._path.jacobian(trajectory, turns)
         found: FloatArray = (path.T @ path).toarray()
         for scenario in self._scenarios:
@@ -110,11 +112,17 @@ class PaintObjective:
     def _errors(self, z: FloatArray) -> tuple[PaintTrajectory, list[FloatArray]]:
         """The trajectory, and each scenario's errors (V,) in m."""
         key = z.tobytes()
-        if self._seen is None or self._seen[0] != key:
+        found = self._seen.pop(key, None)
+        if found is None:
             trajectory = self._variables.trajectory(z)
-            errors = [
-                scenario.deposition.thickness(trajectory) - self._target
-                for scenario in self._scenarios
-            ]
-            self._seen = key, trajectory, errors
-        return self._seen[1], self._seen[2]
+            found = (
+                trajectory,
+                [
+                    scenario.deposition.thickness(trajectory) - self._target
+                    for scenario in self._scenarios
+                ],
+            )
+        while len(self._seen) >= _REMEMBERED:
+            del self._seen[next(iter(self._seen))]
+        self._seen[key] = found
+        return found
