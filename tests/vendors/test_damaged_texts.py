@@ -407,3 +407,43 @@ def test_a_speed_made_of_what_is_damaged_is_not_known() -> None:
     text = FRAME["abb"].replace("VAR num n;", "VAR num n:=3+;")
     made = read("abb", HOME["abb"], LOW["abb"].replace("v100", "v100\\V:=n"), text=text)
     assert [bool(move.unsettled) for move in made.moves] == [False, True]
+
+
+_PICKS = """def cell():
+  def home():
+    movej([0,-1.57,1.57,-1.57,-1.57,0])
+  {end_of_home}
+  def pick():
+    if True:
+      movel(p[-0.45,0.1,0.3,2.2214,2.2214,0])
+    {end_of_if}
+  end
+  home()
+  pick()
+{last}
+"""
+
+
+@pytest.mark.parametrize("last", ["end", ""])
+def test_a_function_without_its_end_ends_where_the_next_begins(last: str) -> None:
+    whole = _PICKS.format(end_of_home="end", end_of_if="end", last="end")
+    made = read("ur", text=_PICKS.format(end_of_home="", end_of_if="end", last=last))
+    assert [m.target for m in made.moves] == [m.target for m in read("ur", text=whole).moves]
+    if not last:  # the last one that a file lacks is no riddle
+        assert any("the 'end' of this 'def' is missing" in n.message for n in made.notes)
+        assert any("is taken to end before line 5" in n.message for n in made.notes)
+
+
+def test_lines_that_do_not_show_where_a_block_ends_are_refused() -> None:
+    flat = "\n".join(line.strip() for line in _PICKS.splitlines())
+    with pytest.raises(SourceError, match="the file ends where 'end'"):
+        read("ur", text=flat.format(end_of_home="", end_of_if="", last=""))
+
+
+def test_an_end_too_many_is_left_out_where_nothing_follows() -> None:
+    whole = _PICKS.format(end_of_home="end", end_of_if="end", last="end")
+    made = read("ur", text=whole + "end\n\nend\n")
+    assert made.moves == read("ur", text=whole).moves
+    assert any("closes nothing" in note.message and note.damage for note in made.notes)
+    with pytest.raises(SourceError, match="closes nothing"):
+        read("ur", text=whole + "end\nhome()\n")

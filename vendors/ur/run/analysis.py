@@ -27,9 +27,9 @@ from ..values.outputs import read_by, written_by
 _EXITS = {"break": Exit.LOOP, "continue": Exit.PASS, "halt": Exit.PROGRAM}
 
 
-_SENT = words("servoj servoc servol speedj speedl")
+SENT = words("servoj servoc servol speedj speedl")
 """What a computer sends moves the robot by them."""
-_MOVING = MOVES | _SENT
+_MOVING = MOVES | SENT
 
 
 class ScriptTree:
@@ -82,7 +82,7 @@ class ScriptTree:
         names = frozenset[str]().union(*map(self.reads, expressions))
         return Step(
             moves=not foreign.isdisjoint(self._moves),
-            sent=not foreign.isdisjoint(_SENT - self._moves),
+            sent=not foreign.isdisjoint(SENT - self._moves),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
             sets=frozenset(foreign) & SETTING,

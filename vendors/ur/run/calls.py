@@ -229,7 +229,7 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
         if entry is ADD_ONS:
             run.outputs.forget()
         if entry is STREAMS:
-            run.course.sent(name, span)
+            run.guided.append((name, span))
             run.out.left_out.append(streamed(name, span))
         return run.keep(node, entry, name)
     told = run.course.value(text)

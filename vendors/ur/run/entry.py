@@ -15,6 +15,7 @@ from ....core.source.text.damage import nothing_driven
 from ..motion.settings import CALLS
 from ..syntax.traversal import all_calls, all_statements, run_in
 from ..syntax.tree import Assign, Block, Call, Define, Evaluate, Statement
+from .analysis import SENT
 from .exits import Finished
 from .interpreter import Interpreter
 
@@ -61,6 +62,9 @@ def run_program(
                 _start(run, define)
         else:
             name = _run_top(run, blocks, name)
+    for called, span in run.guided:
+        if called in SENT or not run.out.move_index:
+            run.course.sent(called, span)
     run.out.check_driven()
     if run.texts.damage is not None:
         nothing_driven([run.texts.damage], run.out.move_index > 0)

@@ -79,6 +79,7 @@ class Interpreter:
         entered: names of the functions that have run.
         threads: that were started.
         inside: names of the threads that are being carried out.
+        guided: functions by which something else than the program moves the robot, and where.
     """
 
     def __init__(self, texts: Texts, tree: ScriptTree, options: ReadOptions) -> None:
@@ -99,6 +100,7 @@ class Interpreter:
         self.entered: set[str] = set()
         self.threads: list[threads.Started] = []
         self.inside: list[str] = []
+        self.guided: list[tuple[str, Span]] = []
         self.out = Transcript(texts.text, self.course)
         self.out.streaming = Streaming(options.robot, self.position.moved, self.position.left_out)
         self._carried = 0

@@ -77,6 +77,10 @@ class ThreadsRun(Evaluation, Protocol):
         """The threads that were started."""
 
     @property
+    def guided(self) -> list[tuple[str, Span]]:
+        """The functions by which something else than the program moves the robot, and where."""
+
+    @property
     def inside(self) -> list[str]:
         """Names of the threads that are being carried out."""
 
@@ -133,7 +137,7 @@ def start(run: ThreadsRun, node: StartThread, scope: Scope) -> Value:
         called = (called for body in bodies for called in sorted(all_calls(body)))
         stream = next((called for called in called if kept(called) is STREAMS), None)
         if stream is not None:
-            run.course.sent(stream, run.texts.span_of(node))
+            run.guided.append((stream, run.texts.span_of(node)))
             run.out.left_out.append(streamed(stream, run.texts.span_of(node)))
         thread.written = _mark(run.tree, function)
         outputs = (run.analysis.outputs_written(body) or () for body in bodies)

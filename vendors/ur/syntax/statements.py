@@ -11,6 +11,7 @@ from . import tree
 from .cursor import Cursor
 from .expressions import parse_expression
 from .lexer import END, LINE, tokenize
+from .missing_ends import with_ends
 from .texts import Texts
 from .tree import Block, Expression, Statement
 
@@ -33,16 +34,20 @@ def parse(texts: Texts, which: int) -> Block:
 
 
 def _parse(texts: Texts, which: int) -> Block:
-    cursor = Cursor(tokenize(texts, which))
+    cursor = Cursor(with_ends(tokenize(texts, which), texts))
     statements: list[Statement] = []
     cursor.skip_lines()
     while cursor.kind != END:
         if cursor.kind in _BRANCH:
-            raise cursor.source.error(
+            error = cursor.source.error(
                 f"this '{cursor.kind}' closes nothing: there is one too many, or a 'def', 'if' or "
                 "'while' above it is missing",
                 cursor.start,
             )
+            if not set(cursor.kinds[cursor.index :]) <= {"end", LINE, ";", END}:
+                raise error  # what follows would stand outside of what it belongs to
+            cursor.step_over(error, "it is left out")
+            break
         statements.append(_mended(cursor))
         cursor.skip_lines()
     return tuple(statements)
