@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...arrays import FloatArray, IntArray
+from ...arrays import FloatArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
 from ...program.move import Move, MoveC, MoveJ
 from ...program.program import Program
@@ -22,29 +22,21 @@ from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
-from ..geometry.corners import Corners
-from ..geometry.curves import Samples, TcpCurves
-from ..geometry.layout import Layout
 from ..geometry.segments import (
     ARC_SEGMENT,
     JOINT_SEGMENT,
     LINE_SEGMENT,
     Ends,
-    Segments,
     make_segments,
 )
-from ..geometry.tcp_curves import make_tcp_curves
-from ..model.blend import PARABOLA
 from ..model.rules import ArcTurn, LineTurn
 from .configurations import ConfigurationFinder, Label, located
+from .following import Nominal, PathFollower
 from .no_move import no_move
 from .path import Route
 from .programmed_speeds import programmed
 from .route_checks import arm_angle_notes, check_near, half_turns, is_arc
 from .route_legs import MoveEnd, RouteLegs, move_ends_of, rows_of
-from .tcp_samples import CONVERGED, States
-from .tcp_walk import sample_tcp
-from .unreachable import why_stranded
 
 if TYPE_CHECKING:
     from ...dialect import ArcRules
@@ -93,6 +85,7 @@ class RouteFinder:
         self._line_turn = line_turn
         self._arc_turn = arc_turn
         self._targets = ConfigurationFinder(robot, label, nearest)
+        self._follower = PathFollower(robot, self._targets)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
         self._last: tuple[Tool, WorkObject, Chain] | None = None
 
@@ -229,8 +222,7 @@ class RouteFinder:
     ) -> FloatArray:
         """Resolve the moves of a stage from configuration q; returns where it ends."""
         ends = self._ends(moves, stage, q, legs)
-        curves: TcpCurves | None = None
-        segments: Segments | None = None
+        nominal: Nominal | None = None
         k, count = 0, len(stage.moves)
         while k < count:
             if ends.kind[k] == JOINT_SEGMENT:
@@ -239,13 +231,11 @@ class RouteFinder:
                 q = ends.q[k, 1] = self._joint_end(moves[i], i, q)
                 k += 1
                 continue
-            if curves is None or segments is None:
-                segments = make_segments(ends)
-                curves = _nominal(segments)
+            nominal = Nominal(stage.chain, stage.moves, ends) if nominal is None else nominal
             after = k + 1
             while after < count and ends.kind[after] != JOINT_SEGMENT:
                 after += 1
-            q = self._walk(moves, stage, range(k, after), segments, curves, q)
+            q = self._follower.follow(moves, nominal, range(k, after), q)
             k = after
         legs.ends.append(ends)
         legs.chains += [stage.chain] * count
@@ -311,57 +301,6 @@ class RouteFinder:
             return self._targets.joints(move.target, q)
         return self._targets.choose(move, i, q)
 
-    def _walk(
-        self,
-        moves: Sequence[Move],
-        stage: MoveGroup,
-        which: range,
-        segments: Segments,
-        curves: TcpCurves,
-        q: FloatArray,
-    ) -> FloatArray:
-        """Where the arm arrives that follows the nominal paths of segments in a row from q.
-
-        Writes the configurations at the ends of each.
-        """
-        if len(self._targets.solved) != 6:
-            i = stage.moves[which[0]]
-            raise located(
-                moves[i],
-                i,
-                f"{self._robot.name} has {self._robot.arm_size} joints; only arms with six or "
-                "seven can follow a path of the TCP",
-            )
-        samples, last = _steps(segments, which)
-        states = States.zeros(len(samples.sigma), self._robot.size)
-        failed, short, reached = sample_tcp(
-            stage.chain,
-            self._targets.solved,
-            self._targets.prescribed,
-            curves,
-            samples,
-            np.array([0, len(samples.sigma)]),
-            q[None],
-            states,
-            np.ones(len(samples.sigma)),
-        )
-        for k, end in zip(which, last, strict=True):
-            i = stage.moves[k]
-            segments.ends.q[k, 0] = q
-            if 0 <= failed <= end:
-                near = states.q[failed]
-                length = float(segments.length[k])
-                reason = self._targets.why_unreachable(moves[i], q) if short > CONVERGED else None
-                if reason is not None:
-                    why = f"target cannot be reached: {reason}"
-                    raise located(moves[i], i, why, reason.cause)
-                raise located(
-                    moves[i], i, *why_stranded(self._robot, near, reached - k, length, short)
-                )
-            q = segments.ends.q[k, 1] = states.q[end].copy()
-            self._targets.check_arrival(moves[i], i, q)
-        return q
-
     def _route(
         self,
         program: Program,
@@ -374,7 +313,7 @@ class RouteFinder:
         segments = make_segments(ends)
         keep = segments.scale > _NOWHERE
         passed = legs.passed(keep, waypoints, notes)
-        notes += half_turns(segments, keep, legs.moves)
+        notes += half_turns(segments, keep, legs.moves, self._follower.turned)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
         notes += arm_angle_notes(self._robot, program, legs.led)
         for move, said in self._targets.departures.items():
@@ -411,25 +350,3 @@ def _turns_third(move: Move) -> bool:
 
 def _span(program: Program, move: int | None) -> Span | None:
     return None if move is None else program.moves[move].statement
-
-
-def _nominal(segments: Segments) -> TcpCurves:
-    """Curves on which segment k spans σ from k to k + 1, without zones."""
-    count = len(segments.scale)
-    corners = Corners(np.zeros(count - 1, dtype=np.int64), np.zeros((count - 1, 3, 2)), [])
-    unit = replace(segments, scale=np.ones(count))
-    return make_tcp_curves(Layout.of(unit, corners), PARABOLA, PARABOLA).curves
-
-
-def _steps(segments: Segments, which: range) -> tuple[Samples, IntArray]:
-    """Samples on the nominal paths of segments in a row, and the last of each."""
-    rows = slice(which.start, which.stop)
-    turns = np.linalg.norm([segments.turn_a[rows], segments.turn_b[rows]], axis=2).sum(axis=0)
-    finest = np.maximum(segments.length[rows] / 0.1, segments.angle[rows] / 0.2)
-    steps = 1 + np.maximum(finest, turns / 0.2).astype(np.int64)
-    counts = steps + 1
-    behind = np.cumsum(counts)
-    owner = np.repeat(np.arange(which.start, which.stop), counts)
-    own = np.arange(behind[-1]) - np.repeat(behind - counts, counts)
-    sigma = owner + own / np.repeat(steps, counts)
-    return Samples(sigma, owner, owner, owner), behind - 1

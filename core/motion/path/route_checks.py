@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,13 +109,21 @@ def is_arc(
     return True
 
 
-def half_turns(segments: Segments, keep: NDArray[np.bool_], moves: Sequence[int]) -> list[Note]:
-    """Notes of the linear moves that turn the tool by half a turn."""
+def half_turns(
+    segments: Segments, keep: NDArray[np.bool_], moves: Sequence[int], turned: Collection[int]
+) -> list[Note]:
+    """Notes of the linear moves that turn the tool by half a turn.
+
+    Args:
+        turned: indices of the moves on which the programmed configuration decides.
+    """
     turns = np.linalg.norm(np.stack([segments.turn_a, segments.turn_b]), axis=2).max(axis=0)
     half = (segments.ends.kind == LINE_SEGMENT) & keep & (turns > _HALF_TURN)
     return [
         Note(
-            "turns the tool by half a turn: rounding decides the way round; put a target between",
+            "turns the tool by half a turn: "
+            + ("the programmed configuration" if moves[k] in turned else "rounding")
+            + " decides the way round; put a target between",
             moves[k],
         )
         for k in map(int, np.flatnonzero(half))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, SourceError
+from ....core.errors import InputError, SourceError, Span
 from ....core.program.move import Wait
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
@@ -69,6 +69,10 @@ class CallsRun(MovesRun, SettingsRun, Protocol):
     @property
     def threads(self) -> list[Started]:
         """The threads that were started."""
+
+    @property
+    def guided(self) -> list[tuple[str, Span]]:
+        """See `ThreadsRun`."""
 
     def keep(self, call: Call | MethodCall, entry: Kept, name: str) -> Value:
         """Keep a call as it stands; what it returns."""
