@@ -127,6 +127,14 @@ class BackupOpener(Protocol):
         """
         ...
 
+    def unreadable_in(self, names: Sequence[str]) -> str | None:
+        """Why files that are of this vendor's controllers cannot be read; None where none are.
+
+        Args:
+            names: as `root_in` takes them, with that of what the user named before them.
+        """
+        ...
+
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder.
 

@@ -21,6 +21,7 @@ from .setup import RobotOptions, check_language, configurations, setup_of
 
 if TYPE_CHECKING:
     from ..core.backup.backup import Backup
+    from ..core.cell.cell import Cell
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
     from ..core.robot.model import Robot
@@ -287,9 +288,20 @@ def _read_backup(backup: Backup, options: SourceOptions) -> Program:
         start,
         setup.robot,
     )
-    setup = replace(setup, backup=backup)
+    setup = replace(setup, backup=backup, cell=_with_tools(setup.cell, program))
     notes = (*backup.notes, *told_of_setup(backup, task, setup), *program.notes)
     return replace(program, setup=setup, notes=notes)
+
+
+def _with_tools(cell: Cell | None, program: Program) -> Cell | None:
+    """A cell beside a backup, with the backup's tools where it says nothing of them but a shape."""
+    if cell is None:
+        return None
+    from ..core.program.tool import Tool
+
+    used = {move.tool.name: move.tool for move in program.moves}
+    said = {name for name, tool in cell.tools.items() if tool != Tool(name)}
+    return replace(cell, tools={**cell.tools, **{n: t for n, t in used.items() if n not in said}})
 
 
 read = by_keywords(read_with, SourceOptions)

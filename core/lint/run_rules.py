@@ -12,7 +12,7 @@ from ..motion.geometry.corners import STOP
 from ..motion.geometry.segments import JOINT_SEGMENT, LINE_SEGMENT
 from ..motion.path.building import NEAR_SINGULAR
 from ..program.move import MoveC, MoveJ
-from ..program.zone import Fine, Radius
+from ..program.zone import ROOM, Fine, Radius
 from ..robot.joint import JointKind
 from .finding import Hit, Rule, RunSubject, Severity
 from .program_rules import has_no_size
@@ -44,7 +44,7 @@ def _zone_cut(subject: RunSubject) -> Iterator[Hit]:
     reaches = zone_reaches(path)
     for i, move in enumerate(path.route.zone_moves):
         zone = path.route.zones[i]
-        if not isinstance(zone, Radius) or path.corners.kind[i] == STOP:
+        if not isinstance(zone, Radius) or zone == ROOM or path.corners.kind[i] == STOP:
             continue
         reach = min(reaches[i])
         # Where the tool merely turns, the zone's angle counts and no distance.

@@ -97,6 +97,10 @@ class Radius:
         )
 
 
+ROOM = Radius(1.0, 1.0, 1.0)
+"""A zone that nobody has programmed, as wide as there is room for: half of a segment is less."""
+
+
 @dataclass(frozen=True, slots=True)
 class ContourFraction:
     """KRL ``C_PTP``: a share of the half contour of a joint move; 1 begins at its middle."""

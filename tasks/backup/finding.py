@@ -52,7 +52,8 @@ def find_backup(path: str | Path, registry: Registry, marked: bool = False) -> B
         marked: whether programs alone are none.
 
     Raises:
-        InputError: the path does not exist, there are several backups, or nothing can be read.
+        InputError: the path does not exist, there are several backups, or nothing can be read,
+            as nobody knows how its controller keeps it.
     """
     source = Path(path)
     if not os.path.lexists(source):
@@ -71,10 +72,22 @@ def find_backup(path: str | Path, registry: Registry, marked: bool = False) -> B
     if found is None and not marked:
         found = _programs_alone(names, registry)
     if found is None:
+        _refuse_unreadable(source, names, registry)
         return None
     notes = (*notes, *_outside(source, found, names, registry))
     backup = found.opener.open(source, folder / found.root, registry.find_robot)
     return replace(backup, notes=(*notes, *backup.notes), unpacked=unpacked)
+
+
+def _refuse_unreadable(source: Path, names: Sequence[str], registry: Registry) -> None:
+    """Refuse what is known to be of a controller whose files nobody can read, by its cause."""
+    if _programs(names, registry):
+        return
+    for vendor in registry.vendors.values():
+        if vendor.backups is not None:
+            why = vendor.backups().unreadable_in([source.name, *names])
+            if why is not None:
+                raise InputError(f"{source}: {why}")
 
 
 def no_backup(path: str | Path, registry: Registry) -> InputError:

@@ -40,7 +40,8 @@ if TYPE_CHECKING:
 
 SAME_TIME = 5e-4
 """s, and m of distance between paths: what no user would call a difference."""
-_PLACE = re.compile(r"\S+:\d+:\d+: |, line \d+")
+_PLACE = re.compile(r"^.*?:\d+:\d+: |\S+:\d+:\d+: |, line \d+")
+"""The place that a message begins with, in folders of any name, and those within."""
 Kind = TypeVar("Kind")
 
 

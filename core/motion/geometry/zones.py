@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import IntArray
 from ...errors import MotionError, Note
-from ...program.zone import Angle, ContourFraction, Fine, Radius, VendorZone, Zone
+from ...program.zone import ROOM, Angle, ContourFraction, Fine, Radius, VendorZone, Zone
 from ...robot.joint import JointLimits
 from ...robot.kinematics.chain import Chain
 from ..model.motion_model import MotionModel
@@ -257,7 +257,9 @@ class ZonePlanner:
 
     def _by_radius(self, i: int, zone: Radius, radius: float, name: str) -> tuple[Reach, Reach]:
         """Reaches of a sphere of ``radius`` m round waypoint i, the same on both sides."""
-        return self._within(i, Reach(radius, ((name, i, 1.0),)), zone.angle, name == "tcp")
+        return self._within(
+            i, Reach(radius, ((name, i, 1.0),)), zone.angle, name == "tcp" and zone != ROOM
+        )
 
     def _within(
         self, i: int, wanted: Reach, angle: float, told: bool = False

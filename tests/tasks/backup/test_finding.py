@@ -33,6 +33,9 @@ class Marked:
     def programs_in(self, names: Sequence[str]) -> str | None:
         return None
 
+    def unreadable_in(self, names: Sequence[str]) -> str | None:
+        return None
+
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         assert (root / self.mark).is_file()
         return Backup(source, root, self.vendor, "controller", "1", (), ())

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import flyby
+from flyby.core.collision.proof.certificate import scenes_of
 from flyby.core.errors import FlybyError, InputError, OptionError, SourceError
 from flyby.core.program.program import Program
 from flyby.tasks.files.places import FilePlaces
@@ -209,6 +210,22 @@ def test_beside_a_cell_the_arm_is_the_backups(tmp_path: Path, archive: bool) -> 
     assert any(told in str(note) for note in program.notes)
     program = flyby.read(source, robot="IRB 4600-40/2.55")
     assert upper(program) == pytest.approx([high for _, high in NARROW])
+
+
+def test_a_cell_need_not_say_the_backups_tools_again(tmp_path: Path) -> None:
+    """Of a tool it may say the shape alone; what it does say of it counts."""
+    folder = tmp_path / "station"
+    Station(moc=one_robot()).write(folder)
+    used = {move.tool for move in flyby.read(folder).moves if move.tool.name != "tool0"}
+    tool = next(iter(used))
+    for more in ("", f"[tool.{tool.name}]\ncylinder_mm = [20, 50]\n"):
+        program = flyby.read(folder, cell=cell_file(tmp_path / "cell.toml", more))
+        assert program.setup.cell.tools[tool.name] == tool
+        scenes = scenes_of(program.setup.cell)
+        assert not any("TCP" in note.message for note in scenes(tool).notes)
+    said = f"[tool.{tool.name}]\ntcp = {{ xyz_mm = [0, 0, 77] }}\n"
+    program = flyby.read(folder, cell=cell_file(tmp_path / "cell.toml", said))
+    assert program.setup.cell.tools[tool.name].tcp.position == (0.0, 0.0, 0.077)
 
 
 def test_another_arm_than_the_backups_is_told(tmp_path: Path) -> None:

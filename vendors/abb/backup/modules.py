@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from ....core.errors import FlybyError, SourceError
@@ -15,6 +15,7 @@ from ..syntax.traversal import calls_in, expressions_of
 from .contents import Contents, EncodedError
 
 _BY_NAME = "callbyvar"
+_LOADS = frozenset({"load", "startload"})
 _MOST_STEPS = 2_000_000
 """From routine to routine, beyond which moves of routines called are not counted any more."""
 
@@ -171,6 +172,28 @@ def _beginning(text: tree.Expression | None) -> str:
     if isinstance(text, tree.Operation):
         text = text.first
     return text.value.lower() if isinstance(text, tree.Text) else ""
+
+
+def loaded_at_runtime(file: ModuleFile) -> Iterator[str]:
+    """Files below the backup's root that a module loads when it runs, as far as texts say which.
+
+    ``Load "HOME:/prog" \\File:="TYPE1.MOD"``; what is on other disks no backup has.
+    """
+    for routine in file.routines:
+        for statement in routine.body.walk():
+            if isinstance(statement, tree.Invoke) and statement.name in _LOADS:
+                texts = [_path(argument.value) for argument in statement.arguments]
+                disk, _, path = "/".join(filter(None, texts)).replace("\\", "/").partition(":")
+                folders = [part for part in path.split("/") if part]
+                if disk.casefold() == "home" and folders:
+                    yield "/".join(["HOME", *folders])
+
+
+def _path(value: tree.Expression | None) -> str:
+    """What an argument says of a file's place; nothing where only a run can tell."""
+    if isinstance(value, tree.Name) and value.name == "diskhome":
+        return "HOME:"
+    return value.value if isinstance(value, tree.Text) else ""
 
 
 def doubled(file: ModuleFile, taken: dict[str, str]) -> tuple[str, str] | None:

@@ -24,6 +24,10 @@ class Opener:
         """See `marks.modules_in`."""
         return modules_in(names)
 
+    def unreadable_in(self, names: Sequence[str]) -> str | None:
+        """None: nothing of this vendor's is known that could not be read."""
+        return None
+
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The backup in a folder; see `BackupOpener.open`."""
         from .opening import opened

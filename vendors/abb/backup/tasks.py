@@ -18,7 +18,13 @@ from ..run.files import MODULES
 from .backinfo import BackInfo, ListedTask
 from .cfg import Parameters, Record
 from .contents import Contents
-from .modules import ModuleFile, ModuleFiles, doubled, moving_routines
+from .modules import (
+    ModuleFile,
+    ModuleFiles,
+    doubled,
+    loaded_at_runtime,
+    moving_routines,
+)
 
 _FOLDER = re.compile(r"(?:(?:rapid/)?(task\d+)/)?(?:progmod|sysmod)/[^/]+", re.IGNORECASE)
 _SHARED = "TASK0"
@@ -73,6 +79,7 @@ def loaded_tasks(
         if task in shared:
             continue
         own = _files(contents, task, modules, notes)
+        own += _at_runtime(contents, own, modules, notes)
         files = tuple(_fitting([*own, *common], notes))
         moving = moving_routines(files)
         found.append(LoadedTask(task, files, _record(task, sys), moving))
@@ -135,6 +142,30 @@ def _files(
             f"{listed(missing.encoded)}"
         )
     return readable
+
+
+def _at_runtime(
+    contents: Contents, files: Sequence[ModuleFile], modules: ModuleFiles, notes: BackupNotes
+) -> list[ModuleFile]:
+    """Modules of the controller's disk that those of a task load, and so on."""
+    found: dict[str, ModuleFile] = {}
+    todo = list(files)
+    while todo:
+        file = todo.pop(0)
+        for path in loaded_at_runtime(file):
+            name = contents.find(path)
+            if name is None:
+                notes.add(f"{file.name} loads {path}, which is not in the backup")
+            elif name not in found and name not in {one.name for one in files}:
+                (one,) = modules.read([name])
+                if one.modules:
+                    found[name] = one
+                    todo.append(one)
+                    notes.add(f"{name}, which {file.name} loads as it runs, is taken as loaded")
+                else:
+                    why = one.fault or "only the controller can read it"
+                    notes.add(f"{name}, which {file.name} loads, is left out: {why}")
+    return list(found.values())
 
 
 def _all_modules(contents: Contents, task: ListedTask) -> list[str]:

@@ -12,6 +12,7 @@ Often only ``R1`` and ``STEU`` are there, or ``R1``, or a part of that.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,7 @@ _VKRC = frozenset({"folgen", "ups", "makros"})
 """Folders of R1 in which controllers of Volkswagen's kind (VKRC, with the VW System Software) keep
 programs: ``Folge1.src``, ``UP99.src``, ``Makro0.src``. Source: headers of such programs,
 robot-forum.com, thread 34305."""
+_IIQKA = re.compile("iiqka|iiqworks", re.IGNORECASE)
 _ROOMS = frozenset({"program", "system", "mada", "tp"}) | _VKRC
 _SOURCES = (".src", ".sub", ".dat")
 
@@ -60,6 +62,15 @@ def of_vkrc(names: Sequence[str], layout: Layout) -> bool:
     inside = f"{layout.robot}/" if layout.robot else ""
     rooms = (name[len(inside) :].split("/") for name in names if name.startswith(inside))
     return any(len(room) > 1 and room[0].casefold() in _VKRC for room in rooms)
+
+
+def of_iiqka(names: Sequence[str]) -> str | None:
+    """The first file or folder that calls itself one of iiQKA.OS or its iiQWorks; None for none.
+
+    What is in them is not public: their names are all that is gone by.
+    """
+    called = (part for name in names for part in name.split("/"))
+    return next((part for part in called if _IIQKA.search(part)), None)
 
 
 def _roots(name: str) -> Iterator[str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .marks import root_in
+from .marks import of_iiqka, root_in
 
 if TYPE_CHECKING:
     from ....core.backup.backup import Backup
@@ -23,6 +23,17 @@ class Opener:
     def programs_in(self, names: Sequence[str]) -> str | None:
         """None: single programs are read by themselves."""
         return None
+
+    def unreadable_in(self, names: Sequence[str]) -> str | None:
+        """See `marks.of_iiqka`."""
+        named = of_iiqka(names)
+        if named is None:
+            return None
+        return (
+            f"{named} is of KUKA's iiQKA.OS, by its name: how that keeps programs and machine data "
+            "is not known here; what is read are archives with KRC/R1 in them (.src, .dat, "
+            "$machine.dat), and single programs in KRL"
+        )
 
     def open(self, source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Backup:
         """The archive in a folder; see `BackupOpener.open`."""

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
 from ....core.program.speed import Speed
-from ....core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
+from ....core.program.zone import FINE, ROOM, Angle, ContourFraction, Radius, VendorZone, Zone
 from ..values.predefined import AXES
 from ..values.provenance import Sources
 from ..values.scope import Variable
@@ -41,8 +41,6 @@ _FULL = 100.0
 _USUAL = {"$advance": 3.0, "$ov_pro": 100.0}
 _KIND = {"$ori_type": "var", "$circ_type": "base"}
 """What is taken for those that are not known."""
-_ROOM = 1.0
-"""m: more than half of any segment of a spline block."""
 _KINDS = {"c_dis": "cdis", "c_spl": "cdis", "c_ori": "cori", "c_vel": "cvel", "c_ptp": "cptp"}
 
 
@@ -275,7 +273,7 @@ class Settings:
 
     def passing(self, joint: bool) -> Set:
         """Of a point inside a spline block: as far as there is room on either side."""
-        return Set(ContourFraction(1.0) if joint else Radius(_ROOM, _ROOM, _ROOM), _NOTHING)
+        return Set(ContourFraction(1.0) if joint else ROOM, _NOTHING)
 
     def _criterion(self, words: tuple[str, ...], joint: bool, spline: bool, span: Span) -> str:
         """The component of ``$APO`` that counts."""

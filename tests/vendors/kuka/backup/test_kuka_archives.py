@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import flyby
 from flyby.core.backup.backup import Backup, SignalKind
 from flyby.core.errors import InputError
 from flyby.core.motion.emulator.controller import Controller
@@ -360,3 +361,18 @@ def test_an_archive_of_a_vkrc_is_refused_by_its_name(tmp_path, room: str) -> Non
     alone = {f"KRC/R1/{room}": "DEF FOLGE1( )\nEND\n"}
     with pytest.raises(InputError, match="a VKRC"):
         opened(tmp_path / "alone", alone)
+
+
+@pytest.mark.parametrize("name", ["iiQKA_backup_2024/project.json", "export.zip/iiQWorks.meta"])
+def test_what_iiqka_keeps_is_refused_by_its_name(tmp_path, name: str) -> None:
+    file = tmp_path / "data" / name
+    file.parent.mkdir(parents=True)
+    file.write_text("{}")
+    with pytest.raises(InputError, match=r"iiQ\S+ is of KUKA's iiQKA\.OS, .*not known here"):
+        flyby.open_backup(tmp_path / "data")
+
+
+def test_programs_that_are_called_so_are_read(tmp_path) -> None:
+    """KRL of iiQKA.OS2 is KRL."""
+    (tmp_path / "iiqka_demo.src").write_text("DEF iiqka_demo()\nPTP {A1 10}\nEND\n")
+    assert len(flyby.read(tmp_path / "iiqka_demo.src", robot="kuka/kr16-2").moves) == 1
