@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,6 +34,10 @@ _ROUNDING = 1e-6
 _THIRD_EVENLY = (
     "assumed: the arm's third axis turns evenly along moves of the TCP, from where it stands to "
     "where the target's arm angle has it; how the controller leads it there is not published"
+)
+_NOT_BETWEEN = (
+    "assumed: the arm angle of the point on the arc is not used, as external axes' positions of "
+    "such points are not; the third axis turns evenly from the arc's beginning to its end"
 )
 
 
@@ -137,6 +142,12 @@ def arm_angle_notes(robot: Robot, program: Program, led: Sequence[int]) -> list[
         led: indices of the moves of the TCP to one.
     """
     notes = [Note(_THIRD_EVENLY, move) for move in led[:1]]
+    through = (
+        i
+        for i, move in enumerate(program.moves)
+        if isinstance(move, MoveC) and move.via.arm_angle is not None
+    )
+    notes += [Note(_NOT_BETWEEN, move) for move in islice(through, 1)]
     origin = robot.origins.get("arm_angle", "")
     first = next((i for i, move in enumerate(program.moves) if _states_one(move)), None)
     if first is not None and origin.startswith("assumed"):

@@ -118,6 +118,24 @@ def test_lines_end_with_the_arm_angle_of_their_target(read) -> None:
     assert not [note for note in run.notes if "count from" in note.message]
 
 
+def test_the_arm_angle_of_a_circle_point_is_not_used_and_noted(read) -> None:
+    def driven(angle: str):
+        lines = (
+            "VAR robtarget via;",
+            *LINES[:3],
+            "via:=Offs(here,0,20,20);",
+            f"via.extax.eax_a:=here.extax.eax_a+{angle};",
+            "MoveC via, Offs(here,0,40,0),v200,fine,tool0;",
+        )
+        return flyby.emulate(read(module(*lines)))
+
+    one, other = driven("0"), driven("30")
+    np.testing.assert_allclose(one.trajectory.q[-1], other.trajectory.q[-1], atol=1e-12)
+    assert one.report.cycle_time == pytest.approx(other.report.cycle_time)
+    (note,) = [note for note in one.notes if "point on the arc is not used" in note.message]
+    assert note.move == 1
+
+
 def test_what_arm_angles_count_from_is_told_where_it_is_assumed(read) -> None:
     run = flyby.emulate(read(module(*LINES), "IRB 14050"))
     (said,) = [note for note in run.notes if "count from is assumed: z of the base" in note.message]
