@@ -17,6 +17,7 @@ from ....core.program.program import Program
 from ....core.program.zone import Fine
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
+from ..approaches import approach_notes
 from ..gains import seconds_gained
 from ..progress import Progress, Report
 from ..rounding import Rounding
@@ -114,6 +115,7 @@ class _Optimization:
             return Solution(program, program, before, before, proof, tuple(notes))
         if self.task.vias is ViaCount.KEEP:
             notes += self._idle(found)
+        notes += approach_notes(given, found.run)
         after = measure(self.controller, found.run, found.certificate)
         return Solution(
             program,

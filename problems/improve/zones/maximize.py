@@ -24,6 +24,7 @@ from ....core.program.program import Program
 from ....core.program.zone import Radius, Zone
 from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
+from ..approaches import approach_notes
 from ..gains import seconds_gained
 from ..solution import Solution, measure
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
@@ -136,7 +137,11 @@ class _Maximization:
             measure(self._controller, before, proof),
             measure(self._controller, after, certificate),
             certificate,
-            (*larger.notes, *scene_notes(self._scenes, program)),
+            (
+                *larger.notes,
+                *scene_notes(self._scenes, program),
+                *approach_notes(before, after),
+            ),
             gained=seconds_gained(before, after),
             zones=changes(points, program, repair.zones, found),
         )
