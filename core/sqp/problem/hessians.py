@@ -9,18 +9,16 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..algebra.matrices import SparseMatrix
+from .damped_update import observed
 from .differences import Differences
 from .errors import NlpError
 from .evaluation import Evaluation, Point
 from .limited_memory import LimitedMemory
 from .nlp import NLP
-from .optimality import lagrangian_slope
 
 LARGEST_DENSE = 400
 """Variables up to which a quasi-Newton matrix is a dense one."""
-_DAMPING = 0.2
 _CURVATURE = 1e-8
-_ROUNDING = 1e-14
 
 
 class HessianKind(StrEnum):
@@ -147,30 +145,20 @@ class _Bfgs:
         return self._evaluation.hessian_pattern.array(self._B)
 
     def moved(self, old: Point, new: Point, multipliers: FloatArray) -> None:
-        s = new.x - old.x
-        before = lagrangian_slope(old.g, old.J, multipliers)
-        after = lagrangian_slope(new.g, new.J, multipliers)
-        y = after - before
-        size = float(s @ s)
-        if size < 1e-28:
+        step = observed(old, new, multipliers)
+        if step is None:
             return
-        curvature = float(s @ y)
         if self._fresh:
-            if curvature > _CURVATURE * size:
-                largest = float(np.abs(y).max())  # y·y may overflow
-                scale = largest * float(y @ (y / largest)) / curvature
+            if step.curvature > _CURVATURE * step.size:
+                largest = float(np.abs(step.y).max())  # y·y may overflow
+                scale = largest * float(step.y @ (step.y / largest)) / step.curvature
                 self._B *= float(np.clip(scale, 1e-6, 1e6))
             self._fresh = False
-        Bs = self._B @ s
-        expected = float(s @ Bs)
-        theta = 1.0
-        if curvature < _DAMPING * expected:
-            theta = (1.0 - _DAMPING) * expected / (expected - curvature)
-        r = theta * y + (1.0 - theta) * Bs
-        noise = _ROUNDING * float(np.abs(s) @ (np.abs(after) + np.abs(before)))
-        if not min(expected, float(s @ r)) > noise:
-            return  # 0/0, or differences of rounded slopes: they would teach nothing
-        self._B += np.outer(r, r / float(s @ r)) - np.outer(Bs, Bs / expected)
+        Bs = self._B @ step.s
+        r = step.damped(Bs)
+        if r is None:
+            return
+        self._B += np.outer(r, r / float(step.s @ r)) - np.outer(Bs, Bs / float(step.s @ Bs))
         self._B = 0.5 * (self._B + self._B.T)
 
     def restart(self, diagonal: FloatArray) -> None:

@@ -14,12 +14,10 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ..algebra.matrices import LowRankSum, SparseMatrix, identity
+from .damped_update import observed
 from .evaluation import Point
-from .optimality import lagrangian_slope
 
 _MEMORY = 12
-_DAMPING = 0.2
-_ROUNDING = 1e-14
 _LEAST, _LARGEST = 1e-8, 1e8
 """Range of σ."""
 
@@ -56,28 +54,17 @@ class LimitedMemory:
 
     def moved(self, old: Point, new: Point, multipliers: FloatArray) -> None:
         """A step was taken."""
-        s = new.x - old.x
-        before = lagrangian_slope(old.g, old.J, multipliers)
-        after = lagrangian_slope(new.g, new.J, multipliers)
-        y = after - before
-        size = float(s @ s)
-        if size < 1e-28:
+        step = observed(old, new, multipliers)
+        if step is None:
             return
-        curvature = float(s @ y)
-        if not self._steps and curvature > 0.0:
-            self._sigma = min(max(curvature / size, _LEAST), _LARGEST)
-        Bs = self._times(s)
-        expected = float(s @ Bs)
-        theta = 1.0
-        if curvature < _DAMPING * expected:
-            theta = (1.0 - _DAMPING) * expected / (expected - curvature)
-        r = theta * y + (1.0 - theta) * Bs
-        noise = _ROUNDING * float(np.abs(s) @ (np.abs(after) + np.abs(before)))
-        if not min(expected, float(s @ r)) > noise:
-            return  # differences of rounded slopes would teach nothing
-        self._steps = [*self._steps[1 - _MEMORY :], s]
+        if not self._steps and step.curvature > 0.0:
+            self._sigma = min(max(step.curvature / step.size, _LEAST), _LARGEST)
+        r = step.damped(self._times(step.s))
+        if r is None:
+            return
+        self._steps = [*self._steps[1 - _MEMORY :], step.s]
         self._changes = [*self._changes[1 - _MEMORY :], r]
-        self._sigma = min(max(float(s @ r) / size, _LEAST), _LARGEST)
+        self._sigma = min(max(float(step.s @ r) / step.size, _LEAST), _LARGEST)
 
     def _times(self, s: FloatArray) -> FloatArray:
         """B s (n,)."""
