@@ -302,13 +302,12 @@ class _StationPage:
         columns = [
             PageColumn("robots"),
             PageColumn("least met", "mm", 1),
-            PageColumn("at", "s", 3),
-            *(PageColumn(one) for one in ("in time", "at any time", "under interlocks")),
+            *(PageColumn(one) for one in ("in time", "any time", "interlocked")),
         ]
         rows = []
         for pair, told in zip(self.made.clearances, self.made.pair_rows(), strict=True):
-            cells: list[PageCell] = [told[0], 1e3 * pair.least, pair.least_at, *told[2:]]
-            level = "" if pair.in_time.proven else "error"
+            cells: list[PageCell] = [told[0], 1e3 * pair.least, *told[2:]]
+            level = "error" if not pair.in_time.proven else "" if pair.safe else "warning"
             rows.append(PageRow(cells, level, names.index(pair.robots[0]), pair.least_at))
         return PageTable("Distances", columns, rows)
 
@@ -324,9 +323,11 @@ def _until(made: DrivenStation) -> float:
 
 
 def _clock(schedule: Schedule, duration: float, last: float) -> OtherClock:
+    """The station's clock; until its program begins a robot stands where it does."""
     at = [min(spell.action.time + schedule.lag, duration) for spell in schedule.waits]
     length = [min(spell.end, last) - spell.begin for spell in schedule.waits]
-    return OtherClock(schedule.begin, np.array(at), np.array(length), schedule.lag)
+    rests = np.array([0.0, *at]), np.array([schedule.begin, *length])
+    return OtherClock(0.0, *rests, schedule.lag)
 
 
 def _waits_for(spell: Spell) -> str:
