@@ -37,12 +37,24 @@ class Passed(NamedTuple):
 
 
 def waits_behind_zones(program: Program, words: SignalWords | None) -> tuple[int, ...]:
-    """Indices of the moves that end in a zone, and then nothing but a wait for signals stops."""
+    """Indices of the moves that end in a zone, and then nothing but a wait for signals stops.
+
+    Where a language stops at every wait that the program does not let the robot pass (KRL, but for
+    ``CONTINUE``), only those count that it lets it pass.
+
+    Args:
+        program: as it was read.
+        words: of its language; None if nobody knows.
+    """
     found: list[int] = []
     if words is None:
         return ()
     for move, between in _between(program):
-        waits = [s for s in between if isinstance(s, Opaque) and _awaits(s, words)]
+        waits = [
+            s
+            for s in between
+            if isinstance(s, Opaque) and _awaits(s, words) and not (words.stops and s.stops)
+        ]
         stops = any(
             s.duration > 0.0 if isinstance(s, Wait) else s.stops for s in between if s not in waits
         )
@@ -50,6 +62,17 @@ def waits_behind_zones(program: Program, words: SignalWords | None) -> tuple[int
         if waits and not stops and not last and not isinstance(program.moves[move].zone, Fine):
             found.append(move)
     return tuple(found)
+
+
+def stopping(program: Program, words: SignalWords | None) -> Program:
+    """The program that stops for all of its waits for signals."""
+    if words is None:
+        return program
+    statements = [
+        replace(s, stops=True) if isinstance(s, Opaque) and not s.stops and _awaits(s, words) else s
+        for s in program.statements
+    ]
+    return replace(program, statements=tuple(statements))
 
 
 def passing(program: Program, words: SignalWords | None, which: Collection[int]) -> Program:

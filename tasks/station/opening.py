@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError, InputError, MotionError, Note
 from ..read import SourceOptions, read_with
-from ..setup import Setup, setup_of_program, start_of
+from ..setup import setup_of_program, start_of
 from .names import check_names
 
 if TYPE_CHECKING:
@@ -59,16 +59,14 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     notes: list[Note] = []
     for member in file.members:
         say(f"reading and driving {member.name}")
-        made, setup = _member(member, file)
+        made, words, passed = _member(member, file)
         members[member.name] = made
-        speaks = setup.vendor.speaks
-        words = None if speaks is None else speaks.signals
         file, said = _with_own_zones(file, made, words)
         _check_axes(file, made)
         actions[member.name] = with_zones(
             actions_of(made.run, words), file.zones, member.name, made.run
         )
-        members[member.name] = replace(made, passing=_passing(file, made, words))
+        members[member.name] = replace(made, passing=_passing(file, made, words, passed))
         ids[member.name] = _ids(made, words)
         looked_at = _looked_at(file, member.name) - _zoned(file, member.name)
         for note in said:
@@ -282,14 +280,13 @@ def _passed(
 ) -> Iterator[Note]:
     """Waits behind a zone: the robot is taken to stop there, which controllers may not."""
     from ...core.program.signal import WaitSignal
-    from ...core.program.zone import Fine
 
     for name, doings in actions.items():
-        moves = members[name].program.moves
+        known = members[name].passing
         for action in doings:
-            if not isinstance(action.does, WaitSignal) or action.move < 0:
+            if not isinstance(action.does, WaitSignal) or known is None:
                 continue
-            if not isinstance(moves[action.move].zone, Fine):
+            if action.move in known.moves:
                 where = "" if action.span is None else f"{action.span}: "
                 yield Note(
                     f"{name}: {where}{action.text}: the move before it has a zone: the robot is "
@@ -299,10 +296,15 @@ def _passed(
                 )
 
 
-def _passing(file: StationFile, member: StationRobot, words: SignalWords | None) -> Passing | None:
-    """What a robot drives that passes through zones which waits stand behind."""
+def _passing(
+    file: StationFile,
+    member: StationRobot,
+    words: SignalWords | None,
+    moves: tuple[int, ...],
+) -> Passing | None:
+    """What a robot drives that passes through the zones of moves, which waits stand behind."""
     from ...core.station.actions import actions_of
-    from ...core.station.passing import passing, waits_behind_zones
+    from ...core.station.passing import passing
     from ...core.station.station import Passing
     from ...core.station.world_zones import with_zones
 
@@ -311,7 +313,6 @@ def _passing(file: StationFile, member: StationRobot, words: SignalWords | None)
         run = member.controller.run(program, start_of(member.program))
         return run, with_zones(actions_of(run, words), file.zones, member.name, run)
 
-    moves = waits_behind_zones(member.program, words)
     if not moves:
         return None
     try:
@@ -323,9 +324,14 @@ def _passing(file: StationFile, member: StationRobot, words: SignalWords | None)
         ) from error
 
 
-def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]:
+def _member(
+    member: MemberFile, file: StationFile
+) -> tuple[StationRobot, SignalWords | None, tuple[int, ...]]:
+    """A robot that stops for all waits, how its language says what it does with signals, and the
+    moves whose zones it may pass through though a wait stands behind."""
     from ...core.driving.past_faults import refuse_faults
     from ...core.motion.emulator.controller import Controller
+    from ...core.station.passing import stopping, waits_behind_zones
     from ...core.station.station import StationRobot
 
     try:
@@ -340,13 +346,17 @@ def _member(member: MemberFile, file: StationFile) -> tuple[StationRobot, Setup]
         program: Program = read_with(member.program, source)
         setup = setup_of_program(program)
         _check_carriers(program)
+        words = None if setup.vendor.speaks is None else setup.vendor.speaks.signals
+        passed = waits_behind_zones(program, words)
+        program = stopping(program, words)
         controller = Controller(setup.vendor, setup.robot)
         refuse_faults(controller, program, start_of(program))
         run = controller.run(program, start_of(program))
     except FlybyError as error:
         raise InputError(f"{file.file}: robot.{member.name}: {error}") from error
     cell = setup.surroundings(program)
-    return StationRobot(member.name, program, controller, cell, run, member.begins), setup
+    made = StationRobot(member.name, program, controller, cell, run, member.begins)
+    return made, words, passed
 
 
 def _foot(robot: Robot) -> tuple[float, float, float]:

@@ -68,3 +68,37 @@ def test_what_is_too_late_is_not_passed(tmp_path: Path) -> None:
 def test_programs_are_improved_where_it_is_known_what_they_do(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"one: .*one\.mod:\d+.*end the move at a stop"):
         flyby.station_zones(corner(tmp_path, "z200", 1200.0))
+
+
+KRL = """DEF {name}()
+$VEL.CP=0.5
+$APO.CPTP=100
+PTP {{A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}}
+PTP {{A1 20,A2 -110,A3 110,A4 0,A5 30,A6 0}} C_PTP
+{wait}
+PTP {{A1 40,A2 -90,A3 90,A4 0,A5 30,A6 0}}
+END
+"""
+
+
+@pytest.mark.parametrize("wait, passes", [("", False), ("CONTINUE", True)])
+def test_krl_passes_where_it_is_let(tmp_path: Path, wait: str, passes: bool) -> None:
+    """A wait stops the advance run, and the robot, unless ``CONTINUE`` stands before it."""
+    members = ""
+    for name, y in (("one", 0), ("two", 9000)):
+        text = KRL.format(
+            name=name, wait=f"{wait}\nWAIT FOR $IN[1]" if name == "one" else "$OUT[1]=TRUE"
+        )
+        (tmp_path / f"{name}.src").write_text(text)
+        cell = f'robot = "kuka/kr16-2"\nbase = {{ xyz_mm = [0, {y}, 0] }}\n'
+        (tmp_path / f"{name}.toml").write_text(cell)
+        members += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.src"\n'
+    file = tmp_path / "station.toml"
+    file.write_text(members + '[links]\n"two.$OUT[1]" = "one.$IN[1]"\n')
+    made = flyby.station(file)
+    one = made.station.members["one"]
+    assert (one.passing is not None) is passes
+    if one.passing is not None:
+        assert one.passing.run.duration < one.run.duration
+    assert any("clearances are proven of both" in str(note) for note in made.notes) is passes
+    assert all(pair.any_time.proven for pair in made.clearances)
