@@ -38,6 +38,8 @@ ROOM = 0.3
 """m above it at which parts are carried."""
 RESTING = 2e-3
 """m that parts may be in what they rest on, and tools deeper in parts than where they take them."""
+BESIDE = 0.01
+"""m within which a part may be beside what it does not touch where it is taken or released."""
 APART = 0.018
 """m beyond the clearance, from where pairs surely count as apart."""
 ON, OFF = Opaque("grip on", True), Opaque("grip off", True)
@@ -287,6 +289,6 @@ def _floor(
         return min(at_end, 0.0) - RESTING
     held = any(body.kind is BodyKind.HELD for body in handled)
     still = {first.kind, second.kind} & {BodyKind.OBSTACLE, BodyKind.PART}
-    if not held or not still or at_end >= max(clearance, RESTING):
+    if not held or not still or at_end >= max(min(clearance, BESIDE), RESTING):
         return None
     return -RESTING if at_end < RESTING else 0.0

@@ -17,6 +17,8 @@ from .scene import TOUCH, CollisionScene, TouchingPairs
 
 RESTING = 2e-3
 """m by which a part may be off, or in, what it rests on where it is taken or released."""
+BESIDE = 0.01
+"""m within which a part may be beside what it does not touch there, as in a holder."""
 APART = 1e-3
 """m beyond what has to be kept, from which pairs that touched count as apart."""
 
@@ -34,7 +36,8 @@ def set_aside(
     That is the tool and a part that it takes at the move's end or has released at its beginning,
     and a part that is carried with what it rests on there. A part goes no deeper than `RESTING`
     into what it rests on, and a tool no deeper into a part than where it takes or releases it and
-    as much more. What a part is beside there, nearer than the clearance, it does not touch.
+    as much more. What a part is beside there, nearer than the clearance and `BESIDE`, it does not
+    touch.
 
     Args:
         scene: with the parts where they are on the move.
@@ -85,7 +88,7 @@ def _floors(
     scene: CollisionScene, rows: IntArray, names: Set[str], q: FloatArray, clearance: float
 ) -> FloatArray:
     """See ``floor`` of `TouchingPairs`, of one end of the move."""
-    within = max(RESTING, clearance)
+    within = max(RESTING, min(clearance, BESIDE))
     distance, _ = scene.chosen_distances(q[None], (np.zeros_like(rows), rows), within)
     floor = np.full(len(rows), math.inf)
     bodies = [[scene.bodies[k] for k in scene.pairs[row]] for row in rows]
