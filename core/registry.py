@@ -17,7 +17,16 @@ from typing import TYPE_CHECKING, NoReturn
 from . import hookspec
 from .door import called
 from .errors import InputError, UnknownNameError
-from .plugins.loading import BrokenPlugin, Offers, distribution, offers_of, order, with_version
+from .plugins.guard import guarded
+from .plugins.loading import (
+    OWN_DISTRIBUTION,
+    BrokenPlugin,
+    Offers,
+    distribution,
+    offers_of,
+    order,
+    with_version,
+)
 from .robot.arm_list import Listed
 from .robot.model_names import described, matching, meant, near
 from .vendor import Vendor
@@ -84,10 +93,14 @@ class Registry:
         for entry_point in sorted(entry_points, key=order):
             try:
                 found = offers_of(entry_point.load(), entry_point.name, known)
-            except (Exception, SystemExit) as error:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:
                 plugin = BrokenPlugin(entry_point.name, distribution(entry_point), error)
                 broken.append(plugin)
                 continue
+            if distribution(entry_point) != OWN_DISTRIBUTION:
+                found = guarded(found, with_version(entry_point))
             known.add(found)
             for parts in found.parts().values():
                 distributions |= dict.fromkeys(parts, with_version(entry_point))

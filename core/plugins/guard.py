@@ -1,0 +1,149 @@
+"""Faults of plugins, named as theirs: what fails of one hinders no other."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ..errors import FlybyError, InputError
+from ..robot.arm_list import Listed
+from ..vendor import Vendor
+from .loading import Offers
+
+if TYPE_CHECKING:
+    from ..robot.model import Robot
+
+_log = logging.getLogger("flyby")
+Value = TypeVar("Value")
+
+
+def guarded(offers: Offers, owner: str) -> Offers:
+    """What a plugin hands over, with its faults named as its own.
+
+    What users ask of it by name raises `InputError`; what is asked of all plugins in turn (lists of
+    arms, backups, forms of logs, rules) is passed over with a warning.
+
+    Args:
+        owner: the distribution, for messages.
+    """
+    guard = _Guard(owner)
+    return Offers(
+        {name: guard.vendor(one) for name, one in offers.vendors.items()},
+        {name: guard.robot(name, load) for name, load in offers.robots.items()},
+        {name: guard.logs(one) for name, one in offers.logs.items()},
+        {
+            name: replace(one, export=guard.named(f"exporter {name}", one.export))
+            for name, one in offers.exporters.items()
+        },
+        {name: guard.rule(one) for name, one in offers.program_rules.items()},
+        {name: guard.rule(one) for name, one in offers.run_rules.items()},
+    )
+
+
+class _Guard:
+    def __init__(self, owner: str) -> None:
+        self._owner = owner
+
+    def vendor(self, vendor: Vendor) -> Vendor:
+        arms = {
+            name: self.robot(f"{vendor.name}/{name}", load) for name, load in vendor.robots.items()
+        }
+        opener = vendor.backups
+        return replace(
+            vendor,
+            robots=arms,
+            motion=self.named(f"the motion model of {vendor.name}", vendor.motion),
+            listed=lambda: self.passed("its list of arms", lambda: _listed(vendor), {}),
+            backups=None if opener is None else lambda: _Opener(self, opener),
+        )
+
+    def robot(self, name: str, load: Callable[[], Any]) -> Callable[[], Robot]:
+        def loaded() -> Robot:
+            robot: Robot = load()
+            if not hasattr(robot, "name"):
+                raise TypeError(f"its loader gives no Robot, but {type(robot).__name__}")
+            return robot
+
+        return self.named(f"robot {name}", loaded)
+
+    def logs(self, form: Any) -> Any:
+        return replace(
+            form,
+            recognises=lambda path: self.passed(
+                f"logs {form.name}", lambda: bool(form.recognises(path)), False
+            ),
+            read=self.named(f"logs {form.name}", form.read),
+        )
+
+    def rule(self, rule: Any) -> Any:
+        def hits(subject: Any) -> Iterator[Any]:
+            yield from self.passed(f"rule {rule.id}", lambda: _hits(rule, subject), ())
+
+        return replace(rule, hits=hits)
+
+    def named(self, what: str, call: Callable[..., Value]) -> Callable[..., Value]:
+        """A call whose failure is an error that names the plugin."""
+
+        def guarded_call(*given: Any) -> Value:
+            try:
+                return call(*given)
+            except FlybyError:
+                raise
+            except Exception as error:
+                raise InputError(self._fault(what, error)) from error
+
+        return guarded_call
+
+    def passed(self, what: str, call: Callable[[], Value], otherwise: Value) -> Value:
+        """What a call gives; ``otherwise``, with a warning, where it fails."""
+        try:
+            return call()
+        except Exception as error:
+            _log.warning(self._fault(what, error))
+            return otherwise
+
+    def _fault(self, what: str, error: Exception) -> str:
+        return f"the plugin {self._owner} is at fault: {what}: {type(error).__name__}: {error}"
+
+
+class _Opener:
+    """A plugin's opener, which marks nothing where it fails to look."""
+
+    def __init__(self, guard: _Guard, load: Callable[[], Any]) -> None:
+        self._guard = guard
+        self._opener = guard.passed("its opener of backups", load, None)
+
+    def root_in(self, names: Sequence[str]) -> str | None:
+        """See `core.language.BackupOpener`."""
+        return self._asked("root_in", names)
+
+    def programs_in(self, names: Sequence[str]) -> str | None:
+        """See `core.language.BackupOpener`."""
+        return self._asked("programs_in", names)
+
+    def _asked(self, method: str, names: Sequence[str]) -> str | None:
+        if self._opener is None:
+            return None
+        ask: Callable[[], str | None] = lambda: getattr(self._opener, method)(names)  # noqa: E731
+        return self._guard.passed("its opener of backups", ask, None)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._opener, name)
+
+
+def _listed(vendor: Vendor) -> dict[str, Listed]:
+    found = dict(vendor.listed())
+    for name, one in found.items():
+        if not isinstance(one, Listed):
+            raise TypeError(f"{name} is no Listed, but {type(one).__name__}")
+    return found
+
+
+def _hits(rule: Any, subject: Any) -> tuple[Any, ...]:
+    found = tuple(rule.hits(subject))
+    for hit in found:
+        if not hasattr(hit, "message"):
+            raise TypeError(f"it gives no Hit, but {type(hit).__name__}")
+    return found
