@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic
@@ -18,7 +19,23 @@ FOLLOWED = 100
 taken that nobody can decide."""
 FOLLOWED_UNMOVED = 1000
 """The same where it has a condition, which may well end it, or does not move the robot."""
+FORESEEN = 100
+"""Passes after which it is foreseen how many more a loop has that moves the robot, and that nothing
+but its condition ends: from how far that came nearer to its end in the second half of them."""
 _UNMOVED = "does not move the robot, as nothing fulfils the conditions of its motion"
+
+
+_BOUNDS = {"<": 1.0, "<=": 1.0, ">": -1.0, ">=": -1.0}
+"""Comparisons that let a loop go on: the sign of what is left up to the bound."""
+
+
+def to_bound(symbol: str, counter: object, bound: object) -> float | None:
+    """How far a counter is from the bound that it is compared with; None of what is no number."""
+    sign = _BOUNDS.get(symbol)
+    for value in (counter, bound):
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            return None
+    return None if sign is None else sign * (float(bound) - float(counter))  # type: ignore[arg-type]
 
 
 def _nothing() -> None:
@@ -39,6 +56,8 @@ class Loop(Generic[Block]):
         endless: whether no condition ends it.
         counts: whether it counts to an end by itself, whatever its body does.
         labels: that stand in it beside those of its body.
+        distance: how far its condition is from ending it, as a number that falls to zero; None
+            where it says nothing of that kind.
         ended: gives the data that its condition reads values with which it does not let the loop
             go on, for a loop that is left though they say that it goes on.
     """
@@ -52,6 +71,7 @@ class Loop(Generic[Block]):
     endless: bool = False
     counts: bool = False
     labels: frozenset[str] = NOTHING
+    distance: Callable[[], float | None] = _nothing
     ended: Callable[[], None] = _nothing
 
 
@@ -93,6 +113,8 @@ class Passes(Generic[Block]):
         begun: for each pass, how many moves had been read before it.
         left_to_others: whether outputs that its condition reads have just been left to others: it
             is to be asked again.
+        distance, moved: how far its condition was from ending it half way to `FORESEEN` passes, and
+            how many moves had been read then.
         polled: whether what its motion depends on has been left to others.
     """
 
@@ -114,6 +136,8 @@ class Passes(Generic[Block]):
     begun: list[int] = field(default_factory=list)
     left_to_others: bool = False
     polled: bool = False
+    distance: float | None = None
+    moved: int = 0
 
     def __post_init__(self) -> None:
         self.mark = self.start.asked
@@ -279,6 +303,8 @@ class Endings(Generic[Block]):
                 loop.ended()
             return True
         if gets_on:
+            if moving and answer is None:
+                self._look_ahead(passes)
             return self._passed(passes, answer) or self._too_long(passes)
         if self._left_to_others(passes):
             passes.left_to_others = True
@@ -291,6 +317,24 @@ class Endings(Generic[Block]):
             return False
         self._satisfy(loop, moving, run)
         return True
+
+    def _look_ahead(self, passes: Passes[Block]) -> None:
+        """Refuse a loop that would go on for more moves than are read as soon as that shows.
+
+        Raises:
+            SourceError: it would.
+        """
+        loop, meter = passes.loop, self._host.meter
+        half = FORESEEN // 2
+        if passes.count == half and not self._analysis.ways_out(loop.body):
+            passes.distance, passes.moved = loop.distance(), meter.moves
+        if passes.count != FORESEEN or passes.distance is None:
+            return
+        distance = loop.distance()
+        if distance is not None:
+            nearer = (passes.distance - distance) / half
+            left = distance / nearer if nearer > 0 else math.inf
+            meter.ahead(left, (meter.moves - passes.moved) / half, loop.words, loop.span)
 
     def _polls(self, passes: Passes[Block]) -> bool:
         """Whether a loop that does not come to move the robot by itself waits for others to tell it

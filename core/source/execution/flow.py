@@ -199,5 +199,5 @@ class Flow(Generic[Block]):
 
 def _goes_on(error: EndlessError, passes: Passes[Block]) -> None:
     """A program without an end was in this loop, again and again: of several the outermost."""
-    if passes.count > 1:
+    if passes.count > 1 and not error.foreseen:
         error.loop = passes.loop.span

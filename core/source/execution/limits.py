@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -28,14 +29,19 @@ class ExecutionLimits:
     calls: int = 40
 
 
+_REMEDY = "Give it an end, choose a routine without it as the entry, or raise the limit"
+
+
 class EndlessError(SourceError):
     """A program goes on and on.
 
     Attributes:
         loop: the outermost one that was under way again and again; None if there is none.
+        foreseen: whether it is that loop itself that goes on.
     """
 
     loop: Span | None = None
+    foreseen: bool = False
 
 
 class Meter:
@@ -91,6 +97,29 @@ class Meter:
         if repeats > self._limits.repeats:
             raise _endless(f"this move is executed {self._limits.repeats} times", span)
 
+    def ahead(self, passes: float, moves: float, words: str, span: Span) -> None:
+        """A loop will run for so many passes more, with so many moves each.
+
+        Args:
+            words: what messages call it.
+            span: of it.
+
+        Raises:
+            SourceError: that is more than a program may move.
+        """
+        if moves < 1 or (passes <= self._limits.repeats and passes * moves <= self._limits.moves):
+            return
+        left = (
+            "comes no nearer to its end" if passes == math.inf else f"has {passes:.6g} passes left"
+        )
+        error = EndlessError(
+            f"{words} {left}, with {moves:.3g} moves each: more than the {self._limits.repeats} "
+            f"passes or {self._limits.moves} moves that are read. {_REMEDY}",
+            span,
+        )
+        error.loop, error.foreseen = span, True
+        raise error
+
     def call(self, name: str, span: Span) -> None:
         """A routine is entered; `back` is called when it is left.
 
@@ -112,7 +141,6 @@ class Meter:
 
 def _endless(what: str, span: Span) -> EndlessError:
     return EndlessError(
-        f"{what} and the program has not ended: a loop without end? Give it an end, choose a "
-        "routine without it as the entry, or raise the limit",
+        f"{what} and the program has not ended: a loop without end? {_REMEDY}",
         span,
     )

@@ -9,12 +9,12 @@ from typing import Protocol
 from ....core.errors import SourceError
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.course import Course
-from ....core.source.execution.endings import Loop
+from ....core.source.execution.endings import Loop, to_bound
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
 from ..syntax.traversal import calls_in
-from ..syntax.tree import Block, Expression, For, If, Test, Truth, While
+from ..syntax.tree import Block, Expression, For, If, Operation, Test, Truth, While
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply, operand_type
 from ..values.scope import Scope, Variable
@@ -157,8 +157,11 @@ def run_for(run: Carrying, statement: For, scope: Scope) -> None:
         run.run_block(statement.body, inner)
         return True
 
+    def distance() -> float | None:
+        return to_bound("<" if step is None or step > 0 else ">", reached, last)
+
     words = f"FOR {statement.name}"
-    loop = Loop(statement.body, statement.stop.span, words, counts=True)
+    loop = Loop(statement.body, statement.stop.span, words, counts=True, distance=distance)
     run.flow.loop(loop, goes_on, carry_out, run_pass)
 
 
@@ -191,6 +194,18 @@ def run_while(run: Carrying, statement: While, scope: Scope) -> None:
         data_read(condition),
         asks=any(run.tree.called(condition, scope.home)),
         endless=isinstance(condition, Truth) and condition.value,
+        distance=lambda: _distance(run, condition, scope),
         ended=lambda: suppose(run.evaluator, condition, scope, False),
     )
     run.flow.loop(loop, goes_on, carry_out)
+
+
+def _distance(run: Carrying, condition: Expression, scope: Scope) -> float | None:
+    """How far a counter is from the bound that ends a loop."""
+    if not isinstance(condition, Operation) or len(condition.rest) != 1:
+        return None
+    symbol, bound = condition.rest[0]
+    if any(True for _ in calls_in(condition)):
+        return None
+    values = (run.evaluator.evaluate(side, scope) for side in (condition.first, bound))
+    return to_bound(symbol, *values)

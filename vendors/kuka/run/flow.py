@@ -10,6 +10,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution import endings, flow
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.transcript import Notes
+from ..syntax.traversal import calls_in
 from ..syntax.tree import (
     Block,
     Call,
@@ -22,6 +23,7 @@ from ..syntax.tree import (
     Loop,
     Name,
     Number,
+    Operation,
     Repeat,
     Return,
     Routine,
@@ -156,7 +158,22 @@ class Flow:
             return self._holds(condition, scope, statement.span, "WHILE")
 
         loop = self._loop(statement.body, condition, words, endless, scope, ended=False)
+        loop = replace(loop, distance=lambda: self._distance(condition, scope))
         self._rules.loop(loop, goes_on, self._pass(scope))
+
+    def _distance(self, condition: Expression, scope: Scope) -> float | None:
+        """How far a counter is from the bound that ends a loop."""
+        if not isinstance(condition, Operation) or len(condition.rest) != 1:
+            return None
+        symbol, bound = condition.rest[0]
+        if any(True for _ in calls_in(condition)):
+            return None
+        sides = (condition.first, bound)
+        values = (
+            side.value if isinstance(side, Number) else self._evaluator.evaluate(side, scope)
+            for side in sides
+        )
+        return endings.to_bound(symbol, *values)
 
     def repeat_(self, statement: Repeat, scope: Scope) -> None:
         """``REPEAT … UNTIL``"""
@@ -210,7 +227,15 @@ class Flow:
         counted = frozenset({statement.counter.name})
         words = f"FOR {statement.counter.text}"
         span = statement.start.span
-        loop = endings.Loop(statement.body, span, words, reads=counted, writes=counted)
+
+        def distance() -> float | None:
+            counter = self._evaluator.names.value(statement.counter, scope)
+            up = not _is_number(step) or step > 0  # type: ignore[operator]
+            return endings.to_bound("<" if up else ">", counter, stop)
+
+        loop = endings.Loop(
+            statement.body, span, words, reads=counted, writes=counted, distance=distance
+        )
         self._rules.loop(loop, goes_on, run, run_pass)
 
     def _note_moved_bound(self, loop: For, stop: Value, scope: Scope) -> None:

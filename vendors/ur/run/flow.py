@@ -6,14 +6,14 @@ from __future__ import annotations
 from typing import Protocol
 
 from ....core.program.move import Opaque
-from ....core.source.execution.endings import Loop
+from ....core.source.execution.endings import Loop, to_bound
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
-from ..syntax.traversal import assigned, returns
-from ..syntax.tree import Block, Constant, Expression, If, Number, While
-from ..values.evaluator import Evaluation, condition
+from ..syntax.traversal import assigned, calls_in, returns
+from ..syntax.tree import Block, Constant, Expression, If, Number, Operation, While
+from ..values.evaluator import Evaluation, condition, evaluate
 from ..values.scope import Scope
 from ..values.values import Unknown
 from .analysis import ScriptTree
@@ -121,6 +121,7 @@ def loop(run: FlowRun, statement: While, scope: Scope) -> None:
             run.tree.reads(statement.condition),
             asks=run.tree.asks(statement.condition),
             endless=_always(statement.condition),
+            distance=lambda: _distance(run, statement.condition, scope),
             ended=lambda: has_ended(run, run.outputs, statement.condition, scope),
         ),
         goes_on,
@@ -130,6 +131,16 @@ def loop(run: FlowRun, statement: While, scope: Scope) -> None:
         # It waits for what is not known.
         span = run.texts.span_of(statement)
         run.out.emit(Opaque(run.texts.text_of(statement), stops=True, span=span))
+
+
+def _distance(run: FlowRun, condition: Expression, scope: Scope) -> float | None:
+    """How far a counter is from the bound that ends a loop."""
+    if not isinstance(condition, Operation) or len(condition.rest) != 1:
+        return None
+    symbol, bound = condition.rest[0]
+    if any(calls_in(condition)):
+        return None
+    return to_bound(symbol, *(evaluate(run, side, scope) for side in (condition.first, bound)))
 
 
 def _always(expression: Expression) -> bool:
