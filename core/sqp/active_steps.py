@@ -112,7 +112,7 @@ class ActiveSteps:
         """The point, with derivatives, at x (n,) within the bounds; None where that is too far from
         the origin (n,), or nothing has a value."""
         problem = self._problem
-        x = np.clip(x, problem.x_lower, problem.x_upper)
+        x = np.minimum(np.maximum(x, problem.x_lower), problem.x_upper)
         change = np.abs(x - origin) / np.maximum(1.0, np.abs(origin))
         if not float(change.max()) <= self._reach:
             return None

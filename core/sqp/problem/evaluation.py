@@ -130,8 +130,8 @@ class Evaluation:
     def _hessian_at(self, x: FloatArray, factor: float, multipliers: FloatArray) -> SparseMatrix:
         hessian = self.nlp.hessian
         assert hessian is not None
-        given, factors = x.copy(), multipliers * self.constraint_factors
-        value = self._call("hessian", lambda: hessian(given, factor, factors))
+        factors = multipliers * self.constraint_factors
+        value = self._call("hessian", hessian, x.copy(), factor, factors)
         found = self.hessian_pattern.array(value)
         self._check_finite("hessian", found.data)
         self.hessian_pattern.symmetry.check("hessian", found)
@@ -208,10 +208,9 @@ class Evaluation:
 
     def _at(self, name: str, function: Callable[[FloatArray], T], x: FloatArray) -> T:
         """What a callable gives at x, of which it gets a copy that it may do with as it likes."""
-        given = x.copy()
-        return self._call(name, lambda: function(given))
+        return self._call(name, function, x.copy())
 
-    def _call(self, name: str, function: Callable[[], T]) -> T:
+    def _call(self, name: str, function: Callable[..., T], *given: object) -> T:
         """What a callable gives.
 
         Raises:
@@ -223,7 +222,7 @@ class Evaluation:
         begin = time.perf_counter()
         try:
             with np.errstate(all="ignore"):
-                return function()
+                return function(*given)
         except NlpError:
             raise
         except ArithmeticError as error:
