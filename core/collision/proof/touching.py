@@ -64,9 +64,13 @@ class TouchingProof:
         rows, distance = self._sampled(touching, pieces[0])
         found: list[SceneFinding] = []
         left = np.arange(len(touching.floor))
+        before: dict[int, list[SceneFinding]] = {}
         for slack in _SLACKS:
             limit = self.wanted + self.residual + slack
             apart = apart_rows(distance[:, left], limit, touching.floor[left])
+            # What is nowhere apart by more is not proven to be clear where it is by less.
+            for row in left[apart.never].tolist():
+                found += before.get(row, [])
             again = np.zeros(len(left), dtype=np.bool_)
             for first, last, which in _alike(apart):
                 span = float(self.path.sigma[rows[first]]), float(self.path.sigma[rows[last]])
@@ -74,7 +78,9 @@ class TouchingProof:
                 met = self._prove(scene, self.residual, [span], pieces, self.wanted)
                 # What is near again once it was apart is so, wherever apart is said to begin.
                 again[which] = bool(met) and slack < _SLACKS[-1] and not _near(met)
-                if not again[which].any():
+                if again[which].any():
+                    before |= dict.fromkeys(left[which].tolist(), met)
+                else:
                     found += met
             done = ~again
             found += self._too_deep(touching, left[done], _of(apart, done), rows, pieces)

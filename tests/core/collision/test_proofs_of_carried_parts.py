@@ -186,3 +186,18 @@ def test_what_comes_apart_later_does_not_hide_what_is_apart() -> None:
     )
     assert made.verdict is Verdict.VIOLATED
     assert set(made.pair or ()) == {"crate 1", "crate 2"}
+
+
+def test_what_is_apart_by_little_is_proven_there_or_nothing_is() -> None:
+    """Lifted by 3 mm on the way, where smoothing may take up more than one: no larger slack at the
+    ends makes that a move on which the crate may touch the floor throughout."""
+    low = MoveC(place(0.6, -0.2, 0.1), Speed(tcp=2.0), FINE, tool=GRIP, via=place(0.6, 0.0, 0.103))
+    program = Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, low, OFF, to(0.6, -0.2, 0.3)))
+    cell = cell_with(FLOOR)
+    for width, verdict in ((0.1, Verdict.PROVEN), (0.25, Verdict.UNPROVEN)):
+        smooth = replace(CONTROLLER.model, smoothing=(width,))
+        controller = Controller(find_vendor("ur"), UR, smooth)
+        handling, run = handling_of(program, cell), controller.run(program)
+        made = certify(controller, run, handled_scenes(cell, handling, run.path), 0.0)
+        assert made.verdict is verdict
+    assert set(made.pair or ()) == {"crate", "floor"} and made.move == 2
