@@ -11,6 +11,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ..dialect import SignalWords
+from ..motion.emulator.run import Run
+from ..motion.geometry.overlaps import taken
+from ..motion.model.rules import Overlap
 from ..program.move import Opaque, Wait
 from ..program.program import Program
 from ..program.signal import WaitSignal
@@ -20,6 +23,8 @@ from .clock import StationClock, StationRun
 from .station import RobotStation
 
 _ROUNDS = 8
+_TOUCHING = 1.0 - 1e-9
+"""Share of a segment from which the zones at its ends have been shrunk until they touch."""
 
 
 class Passed(NamedTuple):
@@ -87,6 +92,26 @@ def passing(program: Program, words: SignalWords | None, which: Collection[int])
             move += 1
         statements.append(statement)
     return replace(program, statements=tuple(statements))
+
+
+def zones_overlap(stopping: Run, passed: Run) -> bool:
+    """Whether zones that are passed change others, as they overlap.
+
+    Then where a robot passes through some of them alone, its path is neither of these two.
+
+    Args:
+        stopping: the program with a stop at every wait.
+        passed: as it passes through all zones that waits stand behind.
+    """
+    path = passed.path
+    match path.model.overlap:
+        case Overlap.SKIP:
+            return path.route.moves != stopping.path.route.moves
+        case Overlap.SHRINK:
+            wanted = path.corners.sources
+            count = len(wanted) + 1
+            return any(taken(k, wanted, count).value > _TOUCHING for k in range(1, count - 1))
+    return False
 
 
 def passed_in_time(

@@ -304,7 +304,7 @@ def _passing(
 ) -> Passing | None:
     """What a robot drives that passes through the zones of moves, which waits stand behind."""
     from ...core.station.actions import actions_of
-    from ...core.station.passing import passing
+    from ...core.station.passing import passing, zones_overlap
     from ...core.station.station import Passing
     from ...core.station.world_zones import with_zones
 
@@ -315,13 +315,19 @@ def _passing(
 
     if not moves:
         return None
+    where = f"{file.file}: robot.{member.name}: where it need not stop for a wait behind a zone"
     try:
-        return Passing(moves, drive, *drive(moves))
+        made = Passing(moves, drive, *drive(moves))
     except MotionError as error:
+        raise InputError(f"{where}: {error}") from error
+    if len(moves) > 1 and zones_overlap(member.run, made.run):
+        names = ", ".join(str(move + 1) for move in moves)
         raise InputError(
-            f"{file.file}: robot.{member.name}: where it need not stop for a wait behind a zone: "
-            f"{error}"
-        ) from error
+            f"{where}: behind moves {names} it waits, zones there overlap, and its path depends on "
+            "which of them it passes: no clearance would be proven of all these paths: make the "
+            "zones smaller, or end the moves at a stop"
+        )
+    return made
 
 
 def _member(

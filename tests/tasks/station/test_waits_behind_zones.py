@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import flyby
 from flyby.core.errors import InputError
+from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.model.rules import Overlap
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.station.passing import passing, zones_overlap
+from flyby.vendors.ur.signals import SIGNALS
 
 from .stations import UNUSED, module
 
@@ -102,3 +110,69 @@ def test_krl_passes_where_it_is_let(tmp_path: Path, wait: str, passes: bool) -> 
         assert one.passing.run.duration < one.run.duration
     assert any("clearances are proven of both" in str(note) for note in made.notes) is passes
     assert all(pair.any_time.proven for pair in made.clearances)
+
+
+SCRIPT = """def one():
+  movej([0, -1.2, 1.6, -2, -1.57, 0])
+  movel(p[0.5, -0.2, 0.4, 0, 3.14, 0], v=0.2)
+  movel(p[0.5, 0.0, 0.4, 0, 3.14, 0], v=0.2, r=RADIUS)
+  while not get_digital_in(1):
+    sync()
+  end
+  movel(p[0.54, 0.0, 0.44, 0, 3.14, 0], v=0.2, r=RADIUS)
+  while not get_digital_in(2):
+    sync()
+  end
+  movel(p[0.54, 0.2, 0.44, 0, 3.14, 0], v=0.2)
+end
+"""
+
+
+def overlapping(folder: Path, radius: float) -> Path:
+    """Blends of a UR on a way of 57 mm, behind both of which it waits."""
+    (folder / "one.script").write_text(SCRIPT.replace("RADIUS", str(radius)))
+    sets = [f"set_digital_out({i}, True)" for i in (1, 2)]
+    two = ["def two():", "movej([0, -1.2, 1.6, -2, -1.57, 0])", *sets, "end"]
+    (folder / "two.script").write_text("\n".join(two) + "\n")
+    for name, x in (("one", 0), ("two", 9000)):
+        base = f"base = {{ xyz_mm = [{x}, 0, 0] }}\n"
+        (folder / f"{name}.toml").write_text('robot = "ur/ur10e"\n' + base)
+    members = "".join(
+        f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.script"\n'
+        for name in ("one", "two")
+    )
+    links = "".join(f'"two.digital_out[{i}]" = "one.digital_in[{i}]"\n' for i in (1, 2))
+    file = folder / "station.toml"
+    file.write_text(f"{members}[links]\n{links}")
+    return file
+
+
+def test_zones_that_change_each_other_are_passed_all_or_refused(tmp_path: Path) -> None:
+    """Through one blend alone the robot drives another path than through both and through none."""
+    (apart,) = flyby.station(overlapping(tmp_path, 0.02)).clearances
+    assert apart.any_time.proven
+    with pytest.raises(InputError, match="behind moves 3, 4 it waits, zones there overlap"):
+        flyby.station(overlapping(tmp_path, 0.04))
+
+
+@pytest.mark.parametrize("overlap", list(Overlap))
+@pytest.mark.parametrize("radius", [0.02, 0.04])
+def test_paths_through_some_zones_are_known_where_none_overlap(
+    tmp_path: Path, overlap: Overlap, radius: float
+) -> None:
+    script = tmp_path / "one.script"
+    script.write_text(SCRIPT.replace("RADIUS", str(radius)))
+    program = flyby.read(script, robot="ur/ur10e")
+    vendor, robot = find_vendor("ur"), find_robot("ur/ur10e")
+    controller = Controller(
+        vendor, robot, replace(Controller(vendor, robot).model, overlap=overlap)
+    )
+    runs = {
+        which: controller.run(passing(program, SIGNALS, which))
+        for which in ((), (2,), (3,), (2, 3))
+    }
+    near = cKDTree(np.concatenate([runs[which].trajectory.q for which in ((), (2, 3))]))
+    beside = max(
+        float(near.query(runs[which].trajectory.q, p=np.inf)[0].max()) for which in ((2,), (3,))
+    )
+    assert (beside > 0.005) is zones_overlap(runs[()], runs[2, 3])
