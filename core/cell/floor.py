@@ -70,7 +70,8 @@ def _floor(robot: Robot, tools: Iterable[Tool]) -> Geometry:
     reach = sum(math.hypot(*place.position) for place in places)
     reach += max((math.hypot(*tool.tcp.position) for tool in tools), default=0.0)
     box = Box((2.0 * reach, 2.0 * reach, _THICK))
-    return Geometry(box, robot.base @ Pose((0.0, 0.0, -_SUNK - 0.5 * _THICK)))
+    top = -robot.base_height - _SUNK
+    return Geometry(box, robot.base @ Pose((0.0, 0.0, top - 0.5 * _THICK)))
 
 
 def _level(robot: Robot) -> list[str]:

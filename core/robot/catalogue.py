@@ -6,6 +6,8 @@ angles.
 
     name = "abb/irb6640-180-255"
     payload_kg = 180                     # optional
+    base_height_mm = 0                   # optional: of the base's frame, from which places count,
+                                         # above the plane that the arm is mounted on
 
     [origin]                             # what each group of numbers rests on
     geometry = "published: …"
@@ -185,6 +187,7 @@ def _robot(table: TomlTable) -> Robot:
         may_touch=tuple(_touching(row, len(joints)) for row in table.listed_tables("may_touch")),
         order=order,
         arm_angle_reference=_reference(table),
+        base_height=table.quantity("base_height", LENGTH, 0.0),
         coupled_ranges=tuple(map(_coupled, table.listed_tables("coupled_range"))),
     )
 

@@ -32,6 +32,7 @@ def robot_text(robot: Robot) -> str:
     """
     head: dict[str, Any] = {"name": robot.name}
     head |= {} if robot.payload is None else {"payload_kg": robot.payload}
+    head |= {"base_height_m": robot.base_height} if robot.base_height else {}
     head |= {"doubts": list(robot.doubts)} if robot.doubts else {}
     head |= {"order": list(robot.order)} if robot.order else {}
     if robot.arm_angle_reference is not None:

@@ -68,6 +68,7 @@ class Robot:
         coupled_ranges: ranges of sums of joints' values.
         arm_angle_reference: of an arm with seven axes whose targets state an arm angle, the
             direction that it counts from, in the base's frame.
+        base_height: m, of the base's frame above the plane that the arm is mounted on.
 
     Raises:
         InputError: two axes share a name, the links are not one a joint, a shape or a pair that
@@ -90,6 +91,7 @@ class Robot:
     order: tuple[str, ...] = ()
     coupled_ranges: tuple[CoupledRange, ...] = ()
     arm_angle_reference: Vector3 | None = None
+    base_height: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "origins", MappingProxyType(dict(self.origins)))

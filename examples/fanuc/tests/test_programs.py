@@ -14,17 +14,22 @@ from flyby_fanuc.words import CNT, CR
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flyby.core.cell.floor import bare_cell
+from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import FlybyError, SourceError
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
+from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE, VendorZone
 from flyby.core.recording import RecordedRun, Recording
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.robot.shape import Capsule
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.lines.postures import PostureLabel
+from flyby.core.spatial.pose import Pose
 from flyby.core.translation.hand_out import check_driven
 from flyby.core.translation.translate import translate
 
@@ -88,6 +93,21 @@ def test_a_program_of_a_backup_is_read(backup: Path) -> None:
     kept = [s.text for s in program.statements if isinstance(s, Opaque)]
     assert kept == ["DO[1]=ON", "DO[2]=OFF", "WAIT DI[1]=ON TIMEOUT,LBL[7]", "PAYLOAD[2]"]
     assert 3.0 < Controller(FANUC, LR_MATE).run(program).duration < 10.0
+
+
+@pytest.mark.parametrize("name", sorted(fanuc().robots))
+def test_an_arm_stands_on_the_plane_that_it_is_mounted_on(name: str) -> None:
+    """Z counts from the second axis; the base's own shape ends at the plane."""
+    robot = fanuc().robot(name)
+    foot = next(one for one in robot.shapes if one.link == 0)
+    assert isinstance(foot.shape, Capsule)
+    middle = foot.placement.matrix()
+    ends = middle[2, 3] - abs(middle[2, 2]) * 0.5 * foot.shape.length - foot.shape.radius
+    assert ends == pytest.approx(-robot.base_height, abs=1e-6)
+    up = np.zeros(robot.size)
+    cell = bare_cell(robot, "fanuc", [Tool("tip", Pose((0.0, 0.0, 0.1)))])
+    scene = CollisionScene(cell, cell.tools["tip"])
+    assert (scene.distances(up[None]).distance > 0.0).all()
 
 
 def test_j3_is_counted_from_the_horizontal() -> None:

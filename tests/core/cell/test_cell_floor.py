@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,18 @@ def test_a_tcp_keeps_off_the_plane_and_may_touch_it() -> None:
         return float(found[pairs.index({"pen", FLOOR})])
 
     assert distance(0.0) > 0.0 > distance(-0.002)
+
+
+def test_a_base_that_counts_from_higher_up_has_its_floor_lower() -> None:
+    """FANUC and Yaskawa count from the height of the second axis."""
+    robot = replace(installed().find_robot("ur/ur5e"), base_height=0.3).with_base(TILTED)
+    pen = Tool("pen", Pose((0.0, 0.0, 0.2)))
+    scene = CollisionScene(bare_cell(robot, "ur", [pen]), pen)
+    k = [set(scene.pair_names(k)) for k in range(len(scene.pairs))].index({"pen", FLOOR})
+    for height, free in ((-0.1, True), (-0.3, True), (-0.302, False)):
+        down = TILTED @ Pose((0.4, 0.2, height), (0.0, 1.0, 0.0, 0.0))
+        q = robot.inverse(down @ pen.tcp.inverse())[0].q
+        assert (scene.distances(q[None]).distance[0, k] > 0.0) == free
 
 
 def test_the_floor_can_be_lifted() -> None:

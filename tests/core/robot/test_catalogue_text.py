@@ -33,12 +33,13 @@ def read_back(robot: Robot, folder: Path) -> Robot:
 
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.sampled_from(NAMES), st.integers(0, 2**31))
-def test_every_arm_comes_back(tmp_path: Path, name: str, seed: int) -> None:
-    robot = find_robot(name)
+@given(st.sampled_from(NAMES), st.integers(0, 2**31), st.sampled_from((0.0, 0.33)))
+def test_every_arm_comes_back(tmp_path: Path, name: str, seed: int, height: float) -> None:
+    robot = replace(find_robot(name), base_height=height)
     again = read_back(robot, tmp_path)
     assert again.name == robot.name
     assert again.payload == robot.payload
+    assert again.base_height == height
     assert again.doubts == robot.doubts
     assert again.spread == robot.spread
     assert robot.origins.items() <= again.origins.items()
