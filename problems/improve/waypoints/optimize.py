@@ -205,10 +205,16 @@ class _Optimization:
         return None if held is None else self._judged(*held, task)
 
     def _bare(self, given: Run, found: Counted) -> Counted:
-        """Without the changes that bring nothing."""
+        """Without the changes that bring nothing, as far as the user has not ended the work."""
 
         def judged(program: Program) -> Counted | None:
-            return self._judged(*self._feasibility.verified(program), found.task)
+            if self.ended:
+                return None
+            try:
+                return self._judged(*self._feasibility.verified(program), found.task)
+            except KeyboardInterrupt:
+                self.ended = True
+            return None
 
         return without_idle_changes(given, found, judged)
 

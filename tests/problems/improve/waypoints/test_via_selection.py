@@ -15,6 +15,7 @@ from scipy.spatial import KDTree
 from flyby.core.arrays import FloatArray
 from flyby.core.collision.proof.certificate import certify, scenes_of
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.motion.path.path import Path
 from flyby.core.program.move import Move, MoveJ, MoveL, Opaque
 from flyby.core.program.program import Program
@@ -27,7 +28,7 @@ from flyby.core.robot.work_chain import work_chain
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import quaternion_from_matrix
 from flyby.problems.improve.progress import Progress
-from flyby.problems.improve.solve_round_verify import solve_round_verify
+from flyby.problems.improve.solve_round_verify import ProgramFeasibility, solve_round_verify
 from flyby.problems.improve.waypoints import (
     Effort,
     Fixed,
@@ -224,4 +225,27 @@ def test_ctrl_c_between_two_searches_keeps_what_is_proven(monkeypatch: pytest.Mo
     found = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK)
     assert searches == 2 and found.proven
     assert len(found.program.moves) == len(TWO.moves)
+    assert found.after.time < found.before.time
+
+
+def test_ctrl_c_while_changes_are_taken_back_keeps_what_is_proven(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    verified = ProgramFeasibility.verified
+    asked = []
+
+    def interrupted(*arguments: object) -> object:
+        asked.append(arguments)
+        raise KeyboardInterrupt
+
+    def taking_back(given: Run, found: Counted, judged: Callable[[Program], object]) -> Counted:
+        monkeypatch.setattr(ProgramFeasibility, "verified", interrupted)
+        assert judged(given.program) is None and judged(given.program) is None
+        monkeypatch.setattr(ProgramFeasibility, "verified", verified)
+        return found
+
+    monkeypatch.setattr(optimizing, "without_idle_changes", taking_back)
+    task = WaypointTask(axes=SCENE.free, tilt=math.pi)
+    found = optimize_waypoints(controller(), TWO, SCENE.cell, task, QUICK)
+    assert len(asked) == 1 and found.proven
     assert found.after.time < found.before.time
