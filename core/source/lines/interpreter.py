@@ -343,9 +343,9 @@ class _Interpreter:
 
     def vector(self, word: str, number: int | None) -> Numbers:
         """See `Situation`."""
-        nowhere = Span(self._program.file, 1, 1, 0, 0)
-        index = None if number is None else Number(nowhere, float(number))
-        return self._values.all_of(Datum(nowhere, word, index))
+        assert self._driven is not None
+        index = None if number is None else Number(self._driven, float(number))
+        return self._values.all_of(Datum(self._driven, word, index))
 
     def note(self, message: str) -> None:
         """See `Situation`."""

@@ -95,6 +95,17 @@ def test_a_program_of_a_backup_is_read(backup: Path) -> None:
     assert 3.0 < Controller(FANUC, LR_MATE).run(program).duration < 10.0
 
 
+def test_frames_that_nobody_knows_are_asked_for_at_the_line_that_uses_them() -> None:
+    job = text("UTOOL_NUM=2", "J P[1] 100% FINE", positions=pose(1, 400, frames="UF : 3, UT : 2"))
+    line = job[: job.index("J P[1]")].count("\n") + 1
+    asked = FANUC.read(job, "a.ls", answers=Answers(goes_on=True)).questions
+    assert [(one.key, one.span.line) for one in asked] == [("UTOOL[2,1]", line)]
+    known = {f"{word},{k}]": 0.0 for word in ("UTOOL[2", "UFRAME[3") for k in range(1, 7)}
+    lowered = Answers({key.lower(): value for key, value in known.items()})
+    asked = FANUC.read(job, "a.ls", answers=lowered).questions
+    assert {one.key: one.span.line for one in asked} == dict.fromkeys(known, line)
+
+
 @pytest.mark.parametrize("name", sorted(fanuc().robots))
 def test_an_arm_stands_on_the_plane_that_it_is_mounted_on(name: str) -> None:
     """Z counts from the second axis; the base's own shape ends at the plane."""
