@@ -111,7 +111,10 @@ class Subproblems:
         found = replace(found, d=np.clip(found.d, qp.d_lower, qp.d_upper))
         shown = active_set.shown_by(qp, found.d, found.y, found.z)
         better = active_set.settled(qp, shown, self._saddle, _POLISHING)
-        if better is None or active_set.error(qp, better) >= active_set.error(qp, found):
+        if better is None:
+            return found
+        error = active_set.error(qp, better)
+        if np.isnan(error) or error >= active_set.error(qp, found):
             return found
         return replace(better, status=found.status)
 

@@ -50,6 +50,22 @@ def test_an_old_copy_of_the_program_is_none_of_its_files(tmp_path):
     assert {Path(name).name for name in program.reading.files} == {"Main.mod", "Pick.mod"}
 
 
+def test_of_several_states_of_a_module_the_one_called_like_it_is_taken(tmp_path):
+    def data(x):
+        return module("Data", f"CONST robtarget p1:={point(x)};")
+
+    path = folder(
+        tmp_path,
+        Main_mod=module("Main", proc("main", "MoveL p1,v100,fine,tool0;")),
+        DATA_mod=data(1),
+        Data2_mod=data(2),
+    )
+    assert xs(read_file(path / "Main.mod")) == [1]
+    (path / "DATA.mod").rename(path / "Data1.mod")
+    with pytest.raises(SourceError, match=r"declared in .*Data1.mod and in .*Data2.mod"):
+        read_file(path / "Main.mod")
+
+
 def test_a_module_beside_is_taken_in_when_it_alone_declares_a_name(tmp_path):
     path = folder(
         tmp_path,

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import PureWindowsPath
 
 from ....core.errors import Note, SourceError, Span
 from ....core.source.text.damage import Damage
@@ -83,6 +84,8 @@ class Library:
         candidates = self._names().get(name, [])
         fitting = [file for file in candidates if self._fits(file, name, modules, taken)]
         if len(fitting) > 1:
+            fitting = self._called_so(fitting)
+        if len(fitting) > 1:
             raise SourceError(
                 f"'{name}' is declared in {' and in '.join(fitting)}: name the file that belongs "
                 "to this program, or move the other one away",
@@ -116,6 +119,15 @@ class Library:
         elif double:
             self._reasons[name] = f"{file} declares it, but also declares {double[0]} anew"
         return not again and not double
+
+    def _called_so(self, files: list[str]) -> list[str]:
+        """Of several states of one module the one whose file is called like it; else all."""
+        declared = {tuple(m.name for m in self._shelf[file].parsed()) for file in files}
+        if len(declared) > 1:
+            return files
+        (names,) = declared
+        own = [file for file in files if PureWindowsPath(file).stem.lower() in names]
+        return own if len(own) == 1 else files
 
     def _names(self) -> dict[str, list[str]]:
         if self._index is None:
