@@ -17,6 +17,7 @@ from ..patch.edits import Edit, reading_of
 from ..patch.plan import PatchPlan, Wish, patch_program
 from ..patch.uses import MovePart, Use, UseKind
 from ..reading import Files
+from ..text.numerals import with_decimals_of
 from ..write.options import PatcherOptions
 
 NumbersOf = Callable[[UseKind, MovePart, Move], Sequence[float]]
@@ -87,7 +88,7 @@ class _Literals:
         if len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
             return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
         texts = {
-            span: self.text(span) if before == value else self._said(use, span, before, value)
+            span: self._changed(use, span, before, value)
             for span, before, value in zip(spans, old, new, strict=True)
             if span is not None
         }
@@ -96,6 +97,13 @@ class _Literals:
             for span, before, value in zip(spans, old, new, strict=True)
         )
         return Wish(texts, complete=not missing)
+
+    def _changed(self, use: Use, span: Span, before: float, value: float) -> str:
+        """What stands at a place, with as many decimals as there are, where those are enough."""
+        stated = self.text(span)
+        if before == value:
+            return stated
+        return with_decimals_of(stated, self._said(use, span, before, value))
 
     def _said(self, use: Use, span: Span, before: float, value: float) -> str:
         """A number in the unit that it has in the text, and below an override that is on it:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 _DIGITS = 16
 """Decimals of so many digits lie further apart than doubles, or nearly so; there are few to try."""
 _NEIGHBOURS = 3
+_PLAIN = re.compile(r"[-+]?\d*(?:\.(\d*))?")
 
 
 def shortest(value: float, guess: float, convert: Callable[[float], float]) -> str:
@@ -52,3 +54,14 @@ def plain(value: float) -> str:
 def nine_decimals(value: float) -> str:
     """A decimal of nine digits behind the point at most: a nanometre of m, a picometre of mm."""
     return plain(round(value, 9))
+
+
+def with_decimals_of(before: str, number: str) -> str:
+    """A number with no fewer decimals than the one whose place it takes: ``0`` for ``450.040`` is
+    ``0.000``. What has more of them, or an exponent, stays as it is."""
+    old, new = re.fullmatch(_PLAIN, before.strip()), re.fullmatch(_PLAIN, number)
+    if old is None or new is None:
+        return number
+    missing = len(old[1] or "") - len(new[1] or "")
+    point = "" if missing <= 0 or "." in number else "."
+    return number + point + "0" * missing

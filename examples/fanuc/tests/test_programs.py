@@ -195,6 +195,15 @@ def test_speeds_are_patched_below_the_override_and_in_their_own_unit() -> None:
     assert file.text == job.replace("R[1]=400", "R[1]=200").replace("600cm", "300cm")
 
 
+def test_a_position_keeps_its_decimals() -> None:
+    job = text("L P[1] 100mm/sec FINE", positions=pose(1, 450.04))
+    program = FANUC.read(job, "job.ls")
+    (move,) = program.moves
+    moved = replace(move.target, pose=replace(move.target.pose, position=(0.46504, 0.0, 0.0)))
+    (file,) = FANUC.patch(program.with_moves((replace(move, target=moved),)), LR_MATE).values()
+    assert file.text == job.replace("450.040", "465.040").replace("100.000", "0.000")
+
+
 def test_what_an_offset_makes_is_no_number_of_the_text() -> None:
     lines = [f"PR[1,{k}]=0" for k in range(1, 7)]
     job = text(*lines, "L P[1] 100mm/sec FINE Offset,PR[1]", positions=pose(1, 400))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from flyby.core.source.text.numerals import plain, shortest
+from flyby.core.source.text.numerals import nine_decimals, plain, shortest, with_decimals_of
 
 FINITE = st.just(0.0) | st.floats(1e-12, 1e6) | st.floats(-1e6, -1e-12)
 UNITS = [
@@ -55,3 +55,31 @@ def test_plain_decimals_are_the_double_and_have_no_exponent(value: float) -> Non
 @given(st.integers(-(2**53), 2**53))
 def test_whole_numbers_have_no_point(value: int) -> None:
     assert plain(float(value)) == str(value)
+
+
+@given(
+    st.decimals(-9999, 9999, places=3).map(lambda d: f"{d:f}") | st.integers(-99, 99).map(str),
+    st.floats(-1e4, 1e4).map(nine_decimals),
+)
+def test_a_changed_number_keeps_its_value_and_its_decimals(before: str, number: str) -> None:
+    made = with_decimals_of(before, number)
+    assert float(made) == float(number)
+    assert made.startswith(number)
+    least = len(before.partition(".")[2])
+    assert len(made.partition(".")[2]) == max(least, len(number.partition(".")[2]))
+
+
+@pytest.mark.parametrize(
+    ("before", "number", "made"),
+    [
+        ("450.040", "0", "0.000"),
+        (".000", "-10", "-10.000"),
+        ("5.", "6", "6"),
+        ("50", "72.5", "72.5"),
+        ("1e3", "2000", "2000"),
+        ("A1", "7", "7"),
+        ("1.50", "1e-07", "1e-07"),
+    ],
+)
+def test_the_way_of_writing_is_kept(before: str, number: str, made: str) -> None:
+    assert with_decimals_of(before, number) == made
