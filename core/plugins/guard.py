@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..errors import FlybyError, InputError
 from ..robot.arm_list import Listed
-from ..vendor import Vendor
+from ..vendor import LANGUAGE_PARTS, Vendor
 from .loading import Offers
 
 if TYPE_CHECKING:
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger("flyby")
 Value = TypeVar("Value")
+_METHODS = ("read", "read_file", "write", "patch", "record", "usual_period", "steps")
+"""Of the parts of a language (`core.language`)."""
 
 
 def guarded(offers: Offers, owner: str) -> Offers:
@@ -51,10 +53,17 @@ class _Guard:
             name: self.robot(f"{vendor.name}/{name}", load) for name, load in vendor.robots.items()
         }
         opener = vendor.backups
+        language: dict[str, Any] = {
+            name: _Part(self, f"the {name} of {vendor.name}", part)
+            for name in LANGUAGE_PARTS
+            if (part := getattr(vendor, name)) is not None
+        }
         return replace(
             vendor,
             robots=arms,
             motion=self.named(f"the motion model of {vendor.name}", vendor.motion),
+            label=self.named(f"the label of {vendor.name}", vendor.label),
+            **language,
             listed=lambda: self.passed("its list of arms", lambda: _listed(vendor), {}),
             backups=None if opener is None else lambda: _Opener(self, opener),
         )
@@ -106,6 +115,19 @@ class _Guard:
 
     def _fault(self, what: str, error: Exception) -> str:
         return f"the plugin {self._owner} is at fault: {what}: {type(error).__name__}: {error}"
+
+
+class _Part:
+    """A part of a plugin's language, whose failures name the plugin."""
+
+    def __init__(self, guard: _Guard, what: str, part: Any) -> None:
+        self._part = part
+        for name in _METHODS:  # As attributes of its own: protocols are looked up there.
+            if hasattr(part, name):
+                setattr(self, name, guard.named(what, getattr(part, name)))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._part, name)
 
 
 class _Opener:

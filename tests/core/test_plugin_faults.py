@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from flyby.core.errors import InputError
+from flyby.core.errors import InputError, SourceError, Span
 from flyby.core.hookspec import hookimpl
-from flyby.core.registry import Registry
+from flyby.core.program.move import MoveJ
+from flyby.core.program.program import Program
+from flyby.core.program.speed import Speed
+from flyby.core.program.target import JointTarget
+from flyby.core.registry import Registry, find_robot
 from flyby.core.vendor import Vendor
 
 
@@ -42,6 +48,34 @@ def test_a_robot_that_cannot_be_loaded_names_the_plugin(load: Any, said: str) ->
     registry = discovered(odd(robots={"one": load}))
     with pytest.raises(InputError, match=rf"flyby-odd 1.0 is at fault: robot odd/one: .*{said}"):
         registry.find_robot("odd/one")
+
+
+def test_a_language_that_fails_names_the_plugin() -> None:
+    """What users hear of is no traceback; errors that say what is wrong stay as they are."""
+    broken = SimpleNamespace(read=fails, read_file=fails, write=fails, patch=fails)
+    parts = {"reader": broken, "writer": broken, "patcher": broken, "suffixes": (".odd",)}
+    vendor = discovered(odd(**parts)).find_vendor("odd")
+    robot, start = find_robot("ur/ur5e"), JointTarget((0.0,) * 6)
+    program = Program((MoveJ(start, Speed(joint_fraction=0.5)),))
+    asked: dict[str, Callable[[], Any]] = {
+        "the reader of odd": lambda: vendor.read("x", "a.odd"),
+        "the writer of odd": lambda: vendor.write(program, robot),
+        "the patcher of odd": lambda: vendor.patch(program, robot),
+        "the label of odd": lambda: vendor.label(robot, np.zeros(6)),
+    }
+    for what, ask in asked.items():
+        said = f"the plugin flyby-odd 1.0 is at fault: {what}: ZeroDivisionError: by nought"
+        with pytest.raises(InputError, match=f"^{said}"):
+            ask()
+
+    def refuses(*_: object) -> Any:
+        raise SourceError("no such word", Span("a.odd", 3, 1, 0, 0))
+
+    speaks = discovered(
+        odd(reader=SimpleNamespace(read=refuses, read_file=refuses), suffixes=(".odd",))
+    )
+    with pytest.raises(SourceError, match=r"^a\.odd:3:1: no such word"):
+        speaks.find_vendor("odd").read("x", "a.odd")
 
 
 @pytest.mark.parametrize("listed", [fails, lambda: {"one": 3}])
