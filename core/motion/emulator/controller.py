@@ -389,7 +389,7 @@ class Controller:
 def _sampling(model: MotionModel) -> Sampling:
     """What is known of times calls for speeds that are resolved; the rest is as before."""
     if model.torque != WITHOUT_LIMIT:
-        return Sampling(step=0.01, approach=6, near=4)
+        return Sampling(step=0.01, approach=6)
     return Sampling() if model.start_ramp == 0.0 else Sampling(step=0.01, joint=0.02)
 
 

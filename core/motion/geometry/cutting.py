@@ -11,7 +11,7 @@ from ...arrays import FloatArray, IntArray
 from .corners import JOINT_CORNER, POSITION, PRESCRIBED, STOP, TCP_CORNER, TURNING
 from .curves import POLYNOMIAL, Curves, TcpCurves, parameter_slopes
 from .layout import Layout
-from .pieces import WAYPOINT, Pieces, Sampling, more_intervals
+from .pieces import WAYPOINT, Pieces, Sampling
 from .segments import JOINT_SEGMENT
 
 _MERGED = 1e-9
@@ -65,8 +65,7 @@ def cut(
     if sampling.approach > 0:
         near = _approach(np.diff(edge) / even, np.asarray(inside.any(axis=1)), sampling.approach)
         graded = np.maximum(graded, near)
-    near = np.minimum(sampling.near, even // 2)[:, None] * np.stack([stop[:-1], stop[1:]], -1)
-    intervals = even + (graded + more_intervals(graded, near)).sum(1)
+    intervals = even + graded.sum(1)
     return Pieces(
         edge,
         source,
@@ -77,7 +76,6 @@ def cut(
         even,
         lean,
         graded,
-        near,
         stop,
     )
 

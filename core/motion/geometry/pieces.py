@@ -29,9 +29,6 @@ class Sampling:
             halved towards it: slow robots reach their speed within a fraction of a millimetre.
         approach: how often at most the interval next to a zone is halved towards it, until it is
             no longer than the zone's own: a robot slows down for a small zone within little path.
-        near: how many even intervals next to a stop, and what the first of them was halved to last,
-            are cut finer: speed begins to change at a sample, and where these are 10 mm apart it
-            changes for 20 ms by too little at 0.5 m/s.
     """
 
     step: float = 0.02
@@ -42,11 +39,6 @@ class Sampling:
     most: int = 200
     halvings: int = 9
     approach: int = 0
-    near: int = 0
-
-
-_PARTS, _HALVED = 4, 2
-"""Into how many parts intervals near a stop are cut, and of how many halvings as well."""
 
 
 class PieceIndices(NamedTuple):
@@ -79,7 +71,6 @@ class Pieces:
         lean: (P,), how often the steps between samples are halved from a piece's beginning to its
             end: where a blend's legs differ much in extent, its parameter runs unevenly in σ.
         graded: (P, 2), how often the intervals at the beginning and the end are halved.
-        near: (P, 2), how many of the even ones there, the halved one among them, are cut finer.
         stop: (P + 1,) bool, boundaries at which the robot comes to rest.
     """
 
@@ -92,7 +83,6 @@ class Pieces:
     even: IntArray
     lean: IntArray
     graded: IntArray
-    near: IntArray
     stop: NDArray[np.bool_]
 
     @cached_property
@@ -120,10 +110,8 @@ class Pieces:
         """(S,), how far along its piece every sample stands, from 0 to 1."""
         return np.concatenate(
             [
-                _shares(*map(int, (even, lean, *graded, *near)))
-                for even, lean, graded, near in zip(
-                    self.even, self.lean, self.graded, self.near, strict=True
-                )
+                _shares(int(even), int(lean), int(first), int(last))
+                for even, lean, (first, last) in zip(self.even, self.lean, self.graded, strict=True)
             ]
         )
 
@@ -186,31 +174,13 @@ class Pieces:
         np.add.at(extent_bar, index, (sign * edge_bar)[zone])
 
 
-def more_intervals(graded: IntArray, near: IntArray) -> IntArray:
-    """(P, 2), by how many intervals there are more where ``near`` (P, 2) of them are cut finer."""
-    cut = np.where(near > 0, near + np.minimum(graded, _HALVED), 0)
-    return np.asarray((_PARTS - 1) * cut)
-
-
 @cache
-def _shares(
-    even: int, lean: int, first: int, last: int, near_first: int, near_last: int
-) -> FloatArray:
+def _shares(even: int, lean: int, first: int, last: int) -> FloatArray:
     """Samples of one piece from 0 to 1, their steps shrinking by 2^lean along it, the first and
-    the last step halved that often, and so many at both ends cut finer."""
+    the last step halved that often."""
     steps = 0.5 ** (lean * np.linspace(0.0, 1.0, even))
     shares = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
     shares[-1] = 1.0
     begin = shares[1] * 0.5 ** np.arange(first, 0, -1)
     end = 1.0 - (1.0 - shares[-2]) * 0.5 ** np.arange(1, last + 1)
-    shares = np.concatenate([shares[:1], begin, shares[1:-1], end, shares[-1:]])
-    parts = np.ones(len(shares) - 1, dtype=np.int64)
-    if near_first:
-        parts[max(first - _HALVED, 0) : first + near_first] = _PARTS
-    if near_last:
-        parts[len(parts) - last - near_last : len(parts) - max(last - _HALVED, 0)] = _PARTS
-    if parts.max() == 1:
-        return shares
-    left = np.repeat(shares[:-1], parts)
-    number = np.arange(len(left)) - np.repeat(np.cumsum(parts) - parts, parts)
-    return np.append(left + number * np.repeat(np.diff(shares) / parts, parts), 1.0)
+    return np.concatenate([shares[:1], begin, shares[1:-1], end, shares[-1:]])
