@@ -186,7 +186,6 @@ def _average_evenly(
     if last <= first:
         return
     since = back * motion.step - window
-    then = _cubic(np.array([0.0, motion.step]), 0, since)
     rate = 1.0 / window
     now, begin, end = (slice(a, last - first + a) for a in (first, 0, 1))
     positions, slopes, areas = motion.q, motion.dq, motion.areas
@@ -205,7 +204,7 @@ def _average_evenly(
             dq[now],
         )
     )
-    _fill_means(rate, *then[2:5], *then[8:], *flat)
+    _fill_means(rate, np.array([0.0, motion.step]), since, *flat)
 
 
 def even_times(begin: float, end: float, step: float) -> FloatArray:
@@ -377,13 +376,8 @@ def _average(
 @lean
 def _fill_means(
     rate: float,
-    rise: float,
-    v0: float,
-    v1: float,
+    interval: FloatArray,
     since: float,
-    way: float,
-    b0: float,
-    b1: float,
     now: FloatArray,
     begin: FloatArray,
     end: FloatArray,
@@ -394,10 +388,12 @@ def _fill_means(
     position: FloatArray,
     velocity: FloatArray,
 ) -> None:
-    """All joints of all knots in one row; positions are added to. See `_Cubic` for the weights."""
+    """All joints of all knots in one row; positions are added to. The window begins ``since`` after
+    the beginning of an interval, whose ends are given."""
+    w = _cubic(interval, 0, since)
     for n in range(velocity.size):
-        step = rise * (end[n] - begin[n]) + v0 * begin_slope[n] + v1 * end_slope[n]
+        step = w.rise * (end[n] - begin[n]) + w.v0 * begin_slope[n] + w.v1 * end_slope[n]
         velocity[n] = rate * (now[n] - begin[n] - step)
     for n in range(position.size):
-        step = way * (end[n] - begin[n]) + b0 * begin_slope[n] + b1 * end_slope[n]
+        step = w.area * (end[n] - begin[n]) + w.b0 * begin_slope[n] + w.b1 * end_slope[n]
         position[n] += rate * (area[n] - begin_area[n] - since * begin[n] - step)
