@@ -140,19 +140,11 @@ class VerdictReader:
             near: moves along which what touches at an end is never apart.
         """
         clearance = min((part.proven for part in known), default=math.inf)
+        parts = _of_parts(wanted, near, any(part.scene.left_out is not None for part in known))
         if clearance == math.inf:
-            message = "nothing is near that it could touch"
+            message = "nothing is near that it could touch" + parts
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)
-        message = in_words(clearance) + _rests_on(known[0].scene.robot)
-        if any(part.scene.left_out is not None for part in known):
-            message += (
-                "; a part, and what takes it or what it rests on, keep "
-                f"{_shown(wanted)} from where they are apart, and go no deeper into each other "
-                "before than they may"
-            )
-            if near:
-                moves = ", ".join(str(move + 1) for move in near)
-                message += f"; on move {moves} they never are apart"
+        message = in_words(clearance) + _rests_on(known[0].scene.robot) + parts
         nearest = nearest_of(known)
         if nearest is None or nearest.nearest.kept > clearance + resolution:
             # Nothing was measured where it matters: what was met is not what is nearest.
@@ -257,6 +249,18 @@ def _rests_on(robot: Robot) -> str:
         told += " (shape assumed)"
     files = dict.fromkeys(pair.file for pair in robot.may_touch)
     return told + "".join(f" (pairs allowed to touch by {file})" for file in files)
+
+
+def _of_parts(wanted: float, near: Sequence[int], handled: bool) -> str:
+    """What is proven of pairs that touch where parts are handled; nothing where none are."""
+    if not (handled or near):
+        return ""
+    said = (
+        f"; a part, and what takes it or what it rests on, keep {_shown(wanted)} from where they "
+        "are apart, and go no deeper into each other before than they may"
+    )
+    moves = ", ".join(str(move + 1) for move in near)
+    return f"{said}; on move {moves} they never are apart" if near else said
 
 
 def in_words(clearance: float) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import cast
 
 import pytest
 from hypothesis import given, settings
@@ -14,9 +15,10 @@ from flyby.core.cell.workpiece import Workpiece
 from flyby.core.collision.clearance import ClearanceMeter, nearest_of
 from flyby.core.collision.handled_scenes import handled_scenes
 from flyby.core.collision.proof.certificate import certify
-from flyby.core.collision.proof.verdict import Certificate, Verdict
+from flyby.core.collision.proof.verdict import Certificate, Verdict, VerdictReader
 from flyby.core.handling.handling import handling_of
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.motion.emulator.run import Run
 from flyby.core.program.move import MoveC, MoveL, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -201,3 +203,11 @@ def test_what_is_apart_by_little_is_proven_there_or_nothing_is() -> None:
         made = certify(controller, run, handled_scenes(cell, handling, run.path), 0.0)
         assert made.verdict is verdict
     assert set(made.pair or ()) == {"crate", "floor"} and made.move == 2
+
+
+def test_pairs_that_never_come_apart_are_named_where_nothing_else_is_near() -> None:
+    reader = VerdictReader(cast(Run, None))
+    made = reader.proven([], 1e-5, 0, 0.005, near=(2,))
+    assert made.message.startswith("nothing is near that it could touch; a part, and what takes it")
+    assert made.message.endswith("on move 3 they never are apart")
+    assert reader.proven([], 1e-5, 0, 0.005).message == "nothing is near that it could touch"
