@@ -27,7 +27,8 @@ class Grammar:
     Attributes:
         registers: words of data that the program itself sets and reads.
         outputs: words of outputs; all other words are asked of the answers.
-        vectors: words of registers that have several numbers, and how many.
+        vectors: words of registers that have several numbers, and how many; they need not stand
+            among ``registers``.
         argument: word of the registers that hold a routine's arguments.
         settings: what holds for the moves behind it until it is set again.
     """
