@@ -148,7 +148,11 @@ class _Opener:
     def _asked(self, method: str, names: Sequence[str]) -> str | None:
         if self._opener is None:
             return None
-        ask: Callable[[], str | None] = lambda: getattr(self._opener, method)(names)  # noqa: E731
+
+        def ask() -> str | None:
+            found: str | None = getattr(self._opener, method)(names)
+            return found
+
         return self._guard.passed("its opener of backups", ask, None)
 
     def __getattr__(self, name: str) -> Any:
