@@ -45,7 +45,7 @@ def program_name(name: str) -> str:
 
 def _number(value: float) -> str:
     """Three decimals as controllers write them, more where these do not say it."""
-    text = f"{round(value, 9) + 0.0:.3f}"
+    text = f"{round(value, 3) + 0.0:.3f}"  # never "-0.000"
     return text if abs(float(text) - value) < 1e-9 else nine_decimals(value)
 
 
