@@ -8,13 +8,21 @@ from typing import Any
 
 from ...program.speed import Speed
 
+ZONE = "zone"
+"""The size of a zone: how far before the point it begins."""
+BEHIND = "behind"
+"""How far it goes on behind the point, where that is a distance of its own."""
+PASSING = "passing"
+"""Whether there is one: 0 for a stop, 1 for any other."""
+ZONES = frozenset({ZONE, BEHIND, PASSING})
+
 
 @dataclass(frozen=True, slots=True)
 class Amount:
     """What a number in the text is.
 
     Args:
-        name: of a field of `Speed`; ``zone`` for the size of a zone.
+        name: of a field of `Speed`; `ZONE`, `BEHIND` or `PASSING` for a number of a zone.
         scale: SI units, or whole, of one of it: 0.001 of mm, 0.01 of percent.
     """
 

@@ -95,7 +95,7 @@ class Statements:
             outputs = names if isinstance(statement.target.index, Number | None) else None
             return Step(writes=names, made_of=made_of, outputs=outputs if own else NOTHING)
         if isinstance(statement, Set):
-            return Step(writes=frozenset([statement.word]), made_of=self.reads([statement.value]))
+            return Step(writes=frozenset(statement.names), made_of=self.reads(statement.values))
         if isinstance(statement, AssignAll):
             made_of = self.reads([term for _, term in statement.terms])
             return Step(writes=self._names(statement.target, self._all), made_of=made_of)
@@ -107,7 +107,7 @@ def expressions_of(statement: Statement) -> list[Expression]:
     if isinstance(statement, Assign):
         return [statement.target, statement.value]
     if isinstance(statement, Set):
-        return [statement.value]
+        return [*statement.values]
     if isinstance(statement, AssignAll):
         return [statement.target, *(term for _, term in statement.terms)]
     if isinstance(statement, If):

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from ...errors import SourceError
+from collections.abc import Sequence
+
+from ...errors import SourceError, Span
 from ..execution.provenance import MovePart
 from ..execution.scopes import unknown_name
 from .expressions import Datum, Expression, Number, Operation
 from .program import Grammar, LineProgram
-from .statements import AssignAll, Numbers, Operand
-from .values import Literal, Unknown, Values, element
+from .statements import AssignAll, Numbers, Operand, Set
+from .values import ONCE, Literal, Unknown, Values, element
 
 
 class Data:
@@ -25,9 +27,12 @@ class Data:
         self._grammar = grammar
         self.values = values
         for setting in grammar.settings:
-            if setting.initial is not None:
-                values.put(setting.word, setting.initial)
-                values.kinds[setting.word] = setting.unit
+            held = setting.initial
+            each = held if isinstance(held, Sequence) else [held] * setting.count
+            for name, value in zip(setting.names, each, strict=True):
+                if value is not None:
+                    values.put(name, value)
+                    values.kinds[name] = setting.unit
         for (word, number), held in program.data.items():
             name = word if number is None else f"{word}[{number}]"
             if isinstance(held, Numbers):
@@ -35,12 +40,32 @@ class Data:
             else:
                 values.put(name, held)
 
-    def hold(self, name: str, expression: Expression) -> None:
-        """Give a register the value of an expression, and the literal that states it."""
+    def hold(
+        self, name: str, expression: Expression, datum: str = "", place: Span | None = None
+    ) -> None:
+        """Give a register the value of an expression, and the literal that states it.
+
+        Args:
+            datum: that the literal belongs to; ``""`` for the register.
+            place: of the literal; None for that of the number.
+        """
         source = self.values.source_of(expression)
         if isinstance(expression, Number):
-            source = Literal(expression.span, name.removesuffix(" once"), (expression.span,))
+            span = place or expression.span
+            source = Literal(span, datum or name, (span,))
         self.values.put(name, self.values.value(expression), source)
+
+    def set(self, statement: Set) -> None:
+        """Give a setting what a line says."""
+        for name, value in zip(statement.names, statement.values, strict=True):
+            held = f"{name}{ONCE}" if statement.once else name
+            self.hold(held, value, statement.names[0], statement.place)
+            self.values.kinds[held] = statement.unit
+
+    def moved(self) -> None:
+        """Forget what held for one move alone."""
+        for name in (name for one in self._grammar.settings for name in one.names):
+            self.values.registers.pop(f"{name}{ONCE}", None)
 
     def assign_all(self, statement: AssignAll) -> None:
         name = self.values.name(statement.target)

@@ -232,9 +232,7 @@ class _Interpreter:
         elif isinstance(statement, AssignAll):
             self._data.assign_all(statement)
         elif isinstance(statement, Set):
-            name = f"{statement.word} once" if statement.once else statement.word
-            self._data.hold(name, statement.value)
-            self._values.kinds[name] = statement.unit
+            self._data.set(statement)
         elif isinstance(statement, If):
             self._if(statement)
         elif isinstance(statement, Label):
@@ -385,5 +383,4 @@ class _Interpreter:
         self._standing = (*own, *(self._standing if self._counted_on else ()))
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
-        for setting in self._grammar.settings:
-            self._values.registers.pop(f"{setting.word} once", None)
+        self._data.moved()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
 from ...dialect import Dialect
-from ...errors import InputError
+from ...errors import InputError, Span
 from ...language import Sources
 from ...program.move import Move, Opaque, Wait
 from ...program.program import Program
@@ -106,21 +106,29 @@ class LineLanguage:
         """A number as the language writes it."""
         return nine_decimals(value)
 
-    def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
+    def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
         """The numbers of a speed or zone, in the order in which a move has them."""
-        if self.motion is not None:
+        settings = self.grammar().settings
+        if self.motion is not None and not settings.set(kind):
             return self.motion.numbers(part, move)
-        return self.grammar().settings.numbers(kind, part, move)
+        return settings.numbers(kind, part, move)
 
     def own(self, use: Use) -> Iterator[Edit]:
         """What is put at a move that gets numbers, or words, of its own."""
-        if self.motion is not None:
+        settings = self.grammar().settings
+        target = isinstance(use.new, JointTarget | PoseTarget)
+        if self.motion is not None and (target or not settings.set(use.kind)):
             yield from self.motion.own(use)
             return
-        settings = self.grammar().settings
-        if isinstance(use.new, JointTarget | PoseTarget) or not any(settings):
+        if target or not settings.set(use.kind):
             raise InputError("there is no number of its own to change: write the program anew")
         yield from settings.own(use)
+
+    def rewritten(self, use: Use, text: Callable[[Span], str]) -> Mapping[Span, str]:
+        """What literals must say that are no single number."""
+        if isinstance(use.new, JointTarget | PoseTarget):
+            return {}
+        return self.grammar().settings.rewritten(use, text)
 
     # --------------------------------------------------------------------- its parts
 
@@ -137,7 +145,15 @@ class LineLanguage:
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `core.language.Patcher`."""
         chosen = PatcherOptions.of(options, f"{self.name} patcher")
-        return patch_lines(program, chosen, self.numbers, self.number, self.own)
+        return patch_lines(
+            program,
+            chosen,
+            self.numbers,
+            self.number,
+            self.own,
+            self.rewritten,
+            self.trailing,
+        )
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `core.language.Writer`; the option is ``opaque``."""
@@ -177,7 +193,7 @@ class LineLanguage:
 
         return writer.text(name, lines_of_statements(program, wait, opaque, move))
 
-    def numbers(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
+    def numbers(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
         """The numbers of a part of a move, in the order in which a line has them.
 
         Raises:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import fields
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields, replace
 from functools import partial
 
 from ...errors import InputError, Span
@@ -20,10 +21,15 @@ from ..reading import Files
 from ..text.numerals import with_decimals_of
 from ..write.options import PatcherOptions
 
-NumbersOf = Callable[[UseKind, MovePart, Move], Sequence[float]]
-"""The numbers of a part of a move, in the order in which a line has them."""
+NumbersOf = Callable[[UseKind, MovePart, Move], Sequence[float | None]]
+"""The numbers of a part of a move, in the order in which a line has them; None for one that may be
+anything."""
 OwnNumbers = Callable[[Use], Iterable[Edit]]
-"""What gives a part of a move numbers, or words, of its own."""
+"""What gives a part of a move numbers, or words, of its own; what it puts in right behind the move
+stands behind its line, and the comment there."""
+Text = Callable[[Span], str]
+Rewritten = Callable[[Use, Text], Mapping[Span, str]]
+"""What literals that are more than a number must say for a part, by their places."""
 
 
 def patch_lines(
@@ -32,6 +38,8 @@ def patch_lines(
     numbers: NumbersOf,
     number: Callable[[float], str],
     own: OwnNumbers | None = None,
+    rewritten: Rewritten = lambda use, text: {},
+    comment: str = "",
 ) -> Files:
     """The files of a program with the numbers that it has now.
 
@@ -45,6 +53,8 @@ def patch_lines(
         numbers: of a part; what the language cannot say it refuses (`InputError`).
         number: a number as the language writes it.
         own: how a move gets numbers of its own; None for its numbers in the place of the point.
+        rewritten: literals that are not changed number by number.
+        comment: what begins a comment behind a statement; ``""`` for none.
 
     Returns:
         The files that changed, by name.
@@ -57,11 +67,22 @@ def patch_lines(
     def text_at(span: Span) -> str:
         return reading.files[span.file].text[span.start : span.end]
 
-    literals = _Literals(text_at, numbers, number)
+    literals = _Literals(text_at, numbers, number, rewritten)
+
+    def behind(edit: Edit, use: Use) -> Edit:
+        at = edit.span
+        if not at.start == at.end == use.statement.end:
+            return edit
+        rest = re.split(r"[\r\n]", reading.files[at.file].text[at.end :], maxsplit=1)[0]
+        if rest.strip() and not (comment and rest.strip().startswith(comment)):
+            return edit
+        end = at.end + len(rest.rstrip())
+        return replace(edit, span=Span(at.file, at.line, at.column, end, end))
 
     def edits(plan: PatchPlan) -> list[Edit]:
         write = own or partial(_in_place_of_point, literals)
-        return [edit for use in plan.changes for edit in _edits(plan, use, write)]
+        made = ((use, edit) for use in plan.changes for edit in _edits(plan, use, write))
+        return [behind(edit, use) for use, edit in made]
 
     return patch_program(program, options, literals, edits)
 
@@ -70,15 +91,17 @@ class _Literals:
     """What the numbers of the lines must say; see `core.source.patch.plan.Literals`."""
 
     def __init__(
-        self, text: Callable[[Span], str], numbers: NumbersOf, number: Callable[[float], str]
+        self, text: Text, numbers: NumbersOf, number: Callable[[float], str], rewritten: Rewritten
     ) -> None:
         self.text = text
         self._numbers = numbers
         self._number = number
+        self._rewritten = rewritten
 
     def written(self, use: Use) -> list[str]:
         """The numbers of a part as a line has them."""
-        return [self._number(value) for value in self._numbers(use.kind, use.new, use.move)]
+        numbers = self._numbers(use.kind, use.new, use.move)
+        return [self._number(value) for value in numbers if value is not None]
 
     def wish(self, use: Use) -> Wish:
         """What the literals of a part must say."""
@@ -87,30 +110,29 @@ class _Literals:
         new = self._numbers(use.kind, use.new, use.move)
         if len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
             return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
-        texts = {
-            span: self._changed(use, span, before, value)
-            for span, before, value in zip(spans, old, new, strict=True)
-            if span is not None
-        }
-        missing = any(
-            span is None and before != value
-            for span, before, value in zip(spans, old, new, strict=True)
-        )
+        texts = dict(self._rewritten(use, self.text))
+        missing = False
+        for span, before, value in zip(spans, old, new, strict=True):
+            if span is None:
+                missing = missing or (before != value and value is not None)
+            elif span not in texts:
+                texts[span] = self._changed(use, span, before, value)
         return Wish(texts, complete=not missing)
 
-    def _changed(self, use: Use, span: Span, before: float, value: float) -> str:
+    def _changed(self, use: Use, span: Span, before: float | None, value: float | None) -> str:
         """What stands at a place, with as many decimals as there are, where those are enough."""
         stated = self.text(span)
-        if before == value:
+        if before == value or value is None:
             return stated
         return with_decimals_of(stated, self._said(use, span, before, value))
 
-    def _said(self, use: Use, span: Span, before: float, value: float) -> str:
+    def _said(self, use: Use, span: Span, before: float | None, value: float) -> str:
         """A number in the unit that it has in the text, and below an override that is on it:
         speeds and zones grow as their numbers do."""
-        grows = use.kind in (UseKind.SPEED, UseKind.ZONE) and before != 0
+        if use.kind not in (UseKind.SPEED, UseKind.ZONE) or not before:
+            return self._number(value)
         try:
-            stated = float(self.text(span)) if grows else before
+            stated = float(self.text(span))
         except ValueError:
             stated = before
         if math.isclose(stated, before, rel_tol=1e-9) or stated == 0:

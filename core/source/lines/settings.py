@@ -1,99 +1,239 @@
 """Settings that hold: words that give the moves behind them a speed, an acceleration, a zone.
 
-``SPEED 30 MM/S ALWAYS``, ``$LIN_SPD := 0.25``, ``OVERRIDE=50%``. A language says as data what each
-sets, in which units, and until when it holds; reading, writing and patching follow from that.
+``SPEED 30 MM/S ALWAYS``, ``$LIN_SPD := 0.25``, ``CNT 1, 300, 200``, ``CP OFF``. A language says as
+data what each sets, in which units, and until when it holds; reading, writing and patching follow
+from that.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 from ...dialect import Unsaid
+from ...display import counted
 from ...errors import InputError, Span
 from ...program.move import Move, MoveJ
 from ...program.speed import Speed
-from ...program.zone import FINE, Radius, VendorZone, Zone, ZoneKind
+from ...program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind
 from ..patch.edits import Edit
 from ..patch.uses import MovePart, Use, UseKind
-from ..text.numerals import nine_decimals
-from .amounts import Units, stated, with_number
-from .expressions import USUAL, Datum, Spelling, parse
+from ..text.files import SourceText
+from ..text.numerals import nine_decimals, with_decimals_of
+from .amounts import BEHIND, PASSING, ZONE, ZONES, Amount, Units, stated, with_number
+from .expressions import USUAL, Datum, Expression, Number, Spelling, parse, parse_all
 from .statements import Line, Numbers, Operand, Set
 
 _LONGEST = 1000
 """Characters of a line that is looked at."""
+NumberText = Callable[[float], str]
+"""A number as the language writes it."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """A word whose number holds.
+    """A word whose numbers hold.
 
     Args:
         word: in capitals.
-        joint, line: what its number is for joint moves, and for lines and arcs, by unit.
-        initial: the number that holds before the word is said; None if nobody knows: it is asked
-            for then.
+        joint, line: what its number, the first of several, is for joint moves, and for lines and
+            arcs, by unit.
+        initial: the number, or all of several, that holds before the word is said; None if nobody
+            knows: it is asked for then.
         unit: of that number.
         sign: what stands between the word and the number.
         always: what stands behind a number that holds until it is set again, where one without it
             holds for the next move alone; None where every one holds.
+        more: what further numbers behind commas are, in all moves.
+        omitted: what each of the numbers is where a line leaves it out; empty: as the one before.
+        opening: what stands before numbers: ``1,`` of ``CNT 1, 300, 200``.
+        words: what may stand in the place of numbers, and those that it means: ``0`` of ``CNT 0``,
+            ``OFF``, and ``""`` of the word alone.
     """
 
     word: str
     joint: Units
     line: Units
-    initial: float | None = None
+    initial: float | Sequence[float] | None = None
     unit: str = ""
     sign: str = " "
     always: str | None = None
+    more: tuple[Amount, ...] = ()
+    omitted: tuple[float, ...] = ()
+    opening: str = ""
+    words: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        wrong = [word for word, numbers in self.words.items() if len(numbers) != self.count]
+        if wrong or (self.omitted and len(self.omitted) != self.count):
+            raise InputError(
+                f"setting {self.word}: {repr(wrong[0]) if wrong else 'omitted'} stands for "
+                f"{self.count} numbers, as many as it has"
+            )
+
+    @cached_property
+    def sets(self) -> frozenset[str]:
+        """Names of what its numbers are (`Amount`)."""
+        amounts = (*self.joint.values(), *self.line.values(), *self.more)
+        return frozenset(one.name for one in amounts)
 
     @property
     def is_zone(self) -> bool:
-        """Whether it sets a zone."""
-        return any(one.name == "zone" for one in (*self.joint.values(), *self.line.values()))
+        """Whether it sets a zone, or a part of one."""
+        return not self.sets.isdisjoint(ZONES)
+
+    @property
+    def count(self) -> int:
+        """How many numbers it has."""
+        return 1 + len(self.more)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Under which its numbers are kept."""
+        return (self.word, *(f"{self.word}[{k}]" for k in range(2, self.count + 1)))
+
+    @property
+    def whole(self) -> bool:
+        """Whether what stands behind the word is one literal, since words may stand there, too."""
+        return bool(self.more or self.words or self.opening)
+
+    def amount(self, k: int, unit: str, joint: bool) -> Amount | None:
+        """What a number is, counted from 0; None if it sets nothing of such moves."""
+        if k:
+            return self.more[k - 1]
+        return (self.joint if joint else self.line).get(unit)
+
+    # ----------------------------------------------------------------------- reading
 
     @cached_property
     def pattern(self) -> re.Pattern[str]:
         """A line that says it."""
-        known = sorted({*self.joint, *self.line} - {""}, key=len, reverse=True)
-        units = "|".join(map(re.escape, known)) or "(?!)"
         always = re.escape(self.always or "").replace(r"\ ", r"\s+") or "(?!)"
         sign = re.escape(self.sign.strip())
         sign = rf"\s*{sign}\s*" if sign else r"\s+"
+        alone = "?" if "" in self.words else ""
         return re.compile(
-            rf"{re.escape(self.word)}{sign}(?P<number>\S.*?)\s*(?P<unit>{units})?"
+            rf"{re.escape(self.word)}(?:{sign}(?P<argument>{self._argument})){alone}"
             rf"(?P<always>\s+{always})?",
             re.IGNORECASE,
         )
 
-    def said(self, move: Move, number: Callable[[float], str]) -> str | None:
-        """The line that gives a move what it states, without ``always``; None if it states none of
-        it."""
-        found = self.stated(move, move.zone if self.is_zone else move.speed)
+    @property
+    def _argument(self) -> str:
+        known = sorted({*self.joint, *self.line} - {""}, key=len, reverse=True)
+        units = "|".join(map(re.escape, known)) or "(?!)"
+        words = "|".join(re.escape(word) for word in self.words if word) or "(?!)"
+        opening = "".join(rf"{re.escape(one)}\s*" for one in self.opening.replace(" ", ""))
+        return rf"(?P<word>{words})|{opening}(?P<number>\S.*?)\s*(?P<unit>{units})?"
+
+    def read(self, line: Line, spelling: Spelling = USUAL) -> Set | None:
+        """What a line sets; None if it does not say this.
+
+        Raises:
+            InputError: it has more numbers than there are.
+        """
+        found = self.pattern.fullmatch(line.source.text, line.start, line.end)
         if found is None:
             return None
-        unit, value = found
-        gap = " " if unit[:1].isalpha() else ""
-        return f"{self.word}{self.sign}{number(value)}{gap}{unit}"
+        begin = line.start + len(self.word)
+        span = line.source.span(*(found.span("argument") if found["argument"] else (begin, begin)))
+        if found["number"] is None:
+            given, unit = self._meant(span, found["word"] or ""), self.unit
+        else:
+            several = self.more and "," in found["number"]
+            each = parse_all if several else _only
+            given = each(line.source, *found.span("number"), spelling)
+            known = {unit.upper(): unit for unit in (*self.joint, *self.line)}
+            unit = known[(found["unit"] or "").upper()]
+        if len(given) > self.count:
+            raise InputError(f"{self.word} has no more than {counted(self.count, 'number')}")
+        left_out = range(len(given), self.count)
+        rest = (Number(span, self.omitted[k]) if self.omitted else given[-1] for k in left_out)
+        once = self.always is not None and not found["always"]
+        alone = self.whole and all(isinstance(one, Number) for one in given)
+        place = span if alone else None
+        return Set(line.span, self.names, (*given, *rest), unit, once, place)
 
-    def stated(self, move: Move, part: MovePart) -> tuple[str, float] | None:
-        """The unit and the number that say a part of a move; None if it states none of it."""
+    def _meant(self, span: Span, word: str) -> tuple[Expression, ...]:
+        """The numbers that a word stands for."""
+        numbers = {known.upper(): numbers for known, numbers in self.words.items()}
+        return tuple(Number(span, value) for value in numbers[word.upper()])
+
+    # ---------------------------------------------------------- writing and patching
+
+    def stated(self, move: Move, part: MovePart) -> tuple[str, tuple[float, ...]] | None:
+        """The unit and the numbers that say a part of a move; None if it states none of it."""
         units = self.joint if isinstance(move, MoveJ) else self.line
-        if isinstance(part, Speed):
-            return stated(part, units)
-        for unit, one in units.items():
-            return unit, _size(part) / one.scale
-        return None
+        if not isinstance(part, Speed):
+            unit = next(iter(units), None)
+            found = None if unit is None else (unit, _of_zone(part, units[unit]))
+            further = [_of_zone(part, one) for one in self.more]
+        else:
+            found = stated(part, units)
+            values = [(getattr(part, one.name), one.scale) for one in self.more]
+            further = [value / scale for value, scale in values if value is not None]
+        if found is None or len(further) < len(self.more):
+            return None
+        return found[0], (found[1], *further)
+
+    def argument(self, unit: str, numbers: Sequence[float], number: NumberText) -> str:
+        """What stands behind the word."""
+        said = [number(value) for value in numbers]
+        for word, meant in self.words.items():
+            if said == [number(value) for value in meant]:
+                return word
+        gap = " " if unit[:1].isalpha() else ""
+        return f"{self.opening}{', '.join(said)}{gap}{unit}"
+
+    def said(self, move: Move, part: MovePart, number: NumberText) -> str | None:
+        """The line that gives a move what it states, without ``always``; None if it states none of
+        it."""
+        found = self.stated(move, part)
+        if found is None:
+            return None
+        argument = self.argument(*found, number)
+        return f"{self.word}{self.sign}{argument}" if argument else self.word
+
+    def changed(
+        self, text: str, unit: str, old: Sequence[float], new: Sequence[float], number: NumberText
+    ) -> str:
+        """What stands behind the word with other numbers; those that stay, stay as they are."""
+        if tuple(old) == tuple(new):
+            return text
+        said = self.argument(unit, new, number)
+        found = re.fullmatch(self._argument, text, re.IGNORECASE)
+        if not text:
+            return f"{self.sign}{said}"
+        if found is None or found["number"] is None or said in self.words:
+            return said
+        given = found["number"].split(",") if self.more else [found["number"]]
+        for k, one in enumerate(given):
+            if old[k] != new[k]:
+                own = one.strip()
+                given[k] = one.replace(own, with_decimals_of(own, number(new[k])))
+        for k in range(len(given), self.count):
+            left_out = self.omitted[k] if self.omitted else new[k - 1]
+            if number(new[k]) != number(left_out):
+                given += [f" {number(value)}" for value in new[len(given) : k + 1]]
+        start, end = found.span("number")
+        return f"{text[:start]}{','.join(given)}{text[end:]}"
 
 
-def _size(part: MovePart) -> float:
+def _only(source: SourceText, start: int, end: int, spelling: Spelling) -> tuple[Expression, ...]:
+    return (parse(source, start, end, spelling),)
+
+
+def _of_zone(part: MovePart, amount: Amount) -> float:
+    """A number of a zone: of a stop all are 0."""
+    if amount.name == PASSING:
+        return float(not isinstance(part, Fine))
     if isinstance(part, Radius):
-        return part.tcp
-    return part.size if isinstance(part, VendorZone) else 0.0
+        return part.tcp / amount.scale
+    if not isinstance(part, VendorZone):
+        return 0.0
+    return part.size * (part.ratio if amount.name == BEHIND else 1.0) / amount.scale
 
 
 @dataclass(frozen=True)
@@ -104,16 +244,22 @@ class Settings:
         settings: those of speeds in the order in which a move's numbers have them.
         zone: kind of the zones that they set.
         number: a number as the language writes it.
+
+    Raises:
+        InputError: spheres have one distance.
     """
 
     settings: tuple[Setting, ...] = ()
     zone: type[Radius] | ZoneKind = Radius
-    number: Callable[[float], str] = nine_decimals
+    number: NumberText = nine_decimals
     _words: frozenset[str] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         words = frozenset(one.word for one in self.settings)
         object.__setattr__(self, "_words", words)
+        two = any(BEHIND in one.sets for one in self.settings)
+        if two and not isinstance(self.zone, ZoneKind):
+            raise InputError("a Radius has one distance: zones of two are of a ZoneKind")
 
     def __iter__(self) -> Iterator[Setting]:
         return iter(self.settings)
@@ -121,35 +267,60 @@ class Settings:
     def __contains__(self, word: object) -> bool:
         return word in self._words
 
+    def set(self, kind: UseKind) -> bool:
+        """Whether they set a speed, or a zone."""
+        return any(self._of(kind))
+
     # ----------------------------------------------------------------------- reading
 
     def read(self, line: Line, spelling: Spelling = USUAL) -> Set | None:
         """What a line sets; None if it sets nothing of this."""
-        text = line.source.text
-        for one in self.settings:
-            found = one.pattern.fullmatch(text, line.start, line.end)
-            if found is not None:
-                value = parse(line.source, *found.span("number"), spelling)
-                known = {unit.upper(): unit for unit in (*one.joint, *one.line)}
-                unit = known[(found["unit"] or "").upper()]
-                once = one.always is not None and not found["always"]
-                return Set(line.span, one.word, value, unit, once)
-        return None
+        return next(filter(None, (one.read(line, spelling) for one in self.settings)), None)
 
     def operand(self, line: Line, kind: UseKind) -> Operand:
         """The speed or zone of a move that states none itself."""
-        span = line.span
-        return Operand(span, tuple(Datum(span, one.word, None) for one in self._of(kind)))
+        return Operand(
+            line.span,
+            tuple(
+                Datum(line.span, one.word, None, Number(line.span, k + 1.0) if k else None)
+                for one in self._of(kind)
+                for k in range(one.count)
+            ),
+        )
 
     def speed(self, numbers: Numbers, joint: bool) -> Speed:
         """The speed that the numbers of `operand` make.
 
         Raises:
-            InputError: a unit sets nothing of such moves, or two settings that are one here differ.
+            InputError: a unit sets nothing of such moves, or two numbers that are one here differ.
         """
+        speed = Speed()
+        for name, value in self._made(UseKind.SPEED, numbers, joint).items():
+            speed = with_number(speed, name, value)
+        return speed
+
+    def zone_of(self, numbers: Numbers, joint: bool = False) -> Zone:
+        """The zone that the numbers of `operand` make."""
+        made = self._made(UseKind.ZONE, numbers, joint)
+        unsaid = 0.0
+        if isinstance(self.zone, ZoneKind) and not any(ZONE in one.sets for one in self.settings):
+            unsaid = self.zone.largest
+        size = made.get(ZONE, unsaid) if made.get(PASSING, 1.0) else 0.0
+        if size == 0:
+            return FINE
+        if not isinstance(self.zone, ZoneKind):
+            return Radius(size).with_one_distance()
+        zone = self.zone.sized(size)
+        if BEHIND not in made or not isinstance(zone, VendorZone):
+            return zone
+        return replace(zone, ratio=made[BEHIND] / size)
+
+    def _made(self, kind: UseKind, numbers: Numbers, joint: bool) -> dict[str, float]:
+        """What the numbers of `operand` are, by the names of amounts."""
         made: dict[str, float] = {}
-        for one, number, unit in zip(self._of(UseKind.SPEED), numbers, numbers.kind, strict=True):
-            amount = (one.joint if joint else one.line).get(unit)
+        places = ((one, k) for one in self._of(kind) for k in range(one.count))
+        for (one, k), number, unit in zip(places, numbers, numbers.kind, strict=True):
+            amount = one.amount(k, unit, joint)
             if amount is None:
                 continue
             value = number * amount.scale
@@ -158,35 +329,44 @@ class Settings:
                     f"{one.word} {number:g}{unit} differs from another setting of "
                     f"Speed.{amount.name}: moves have one of them here"
                 )
-        speed = Speed()
-        for name, value in made.items():
-            speed = with_number(speed, name, value)
-        return speed
-
-    def zone_of(self, numbers: Numbers) -> Zone:
-        """The zone that the numbers of `operand` make."""
-        (one,) = self._of(UseKind.ZONE)
-        size = numbers[0] * {**one.joint, **one.line}[numbers.kind[0]].scale
-        if size == 0:
-            return FINE
-        if isinstance(self.zone, ZoneKind):
-            return self.zone.sized(size)
-        return Radius(size).with_one_distance()
+        return made
 
     # ---------------------------------------------------------- writing and patching
 
     def lines(self, move: Move, said: dict[str, str]) -> Iterator[str]:
         """What is said before a move; ``said``: the lines that hold, by word, kept here."""
-        for one in self.settings:
-            line = one.said(move, self.number)
-            if line is not None and said.get(one.word) != line:
-                said[one.word] = line
-                yield line if one.always is None else f"{line} {one.always}"
+        for kind, part in ((UseKind.SPEED, move.speed), (UseKind.ZONE, move.zone)):
+            for one in self._counting(kind, part):
+                line = one.said(move, part, self.number)
+                if line is not None and said.get(one.word) != line:
+                    said[one.word] = line
+                    yield line if one.always is None else f"{line} {one.always}"
 
-    def numbers(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float, ...]:
-        """The numbers of a speed or zone, in the order of the settings."""
-        found = (one.stated(move, part) for one in self._of(kind))
-        return tuple(0.0 if one is None else one[1] for one in found)
+    def numbers(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
+        """The numbers of a speed or zone, in the order of the settings; None for one that may be
+        anything."""
+        made: list[float | None] = []
+        counting = self._counting(kind, part)
+        for one in self._of(kind):
+            found = one.stated(move, part)
+            nothing = 0.0 if one in counting else None
+            made += [nothing] * one.count if found is None or nothing is None else found[1]
+        return tuple(made)
+
+    def rewritten(self, use: Use, text: Callable[[Span], str]) -> dict[Span, str]:
+        """What literals must say that are all that stands behind a word, by their places."""
+        made: dict[Span, str] = {}
+        counting, at = self._counting(use.kind, use.new), 0
+        for one in self._of(use.kind):
+            places = {*use.origin.numbers[at : at + one.count]}
+            mine = use.origin.numbers and use.origin.datum_of(at) == one.word
+            at += one.count
+            place = places.pop() if len(places) == 1 else None
+            old, new = one.stated(use.move, use.old), one.stated(use.move, use.new)
+            if one.whole and mine and place and old and new:
+                said, wanted = text(place), new[1] if one in counting else old[1]
+                made[place] = one.changed(said, new[0], old[1], wanted, self.number)
+        return made
 
     def own(self, use: Use) -> Iterator[Edit]:
         """Settings of its own for a move: before it, and where they go on holding, those that held
@@ -195,14 +375,14 @@ class Settings:
         before = Span(start.file, start.line, start.column, start.start, start.start)
         behind = Span(start.file, start.line, start.column, start.end, start.end)
         gap = f"\n{' ' * (start.column - 1)}"
-        was: dict[str, Any] = {use.kind: use.old}
-        old = replace(use.move, **was)
         put_in, put_back = "", ""
-        for one in self._of(use.kind):
-            held, new = (one.said(move, self.number) for move in (old, use.move))
+        was = self._counting(use.kind, use.old)
+        for one in self._counting(use.kind, use.new):
+            held, new = (one.said(use.move, part, self.number) for part in (use.old, use.new))
             if new and held != new:
                 put_in += f"{new}{gap}"
-                put_back += f"{gap}{held}" if one.always is None and held else ""
+                held = held if one.always is None and one in was else None
+                put_back += f"{gap}{held}" if held else ""
         yield Edit(before, put_in, use.index)
         if put_back:
             yield Edit(behind, put_back, use.index)
@@ -236,3 +416,9 @@ class Settings:
 
     def _of(self, kind: UseKind) -> list[Setting]:
         return [one for one in self.settings if one.is_zone == (kind is UseKind.ZONE)]
+
+    def _counting(self, kind: UseKind, part: MovePart) -> list[Setting]:
+        """Those that count for a part: of a stop, the one that says so, if there is one."""
+        every = self._of(kind)
+        switches = [one for one in every if PASSING in one.sets]
+        return switches if switches and isinstance(part, Fine) else every

@@ -153,19 +153,22 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """``SPEED 30 MM/S ALWAYS``: a number that the moves behind it have.
+    """``SPEED 30 MM/S ALWAYS``: numbers that the moves behind it have.
 
     Args:
-        word: of the setting, in capitals; a datum of this word is what it holds.
+        names: under which they are kept; a datum of the first is the setting's word.
+        values: a number for each.
         unit: that stands behind the number.
-        once: whether it holds for the next move alone.
+        once: whether they hold for the next move alone.
+        place: of all that stands behind the word, where that is one literal.
     """
 
     span: Span
-    word: str
-    value: Expression
+    names: tuple[str, ...]
+    values: tuple[Expression, ...]
     unit: str = ""
     once: bool = False
+    place: Span | None = None
 
 
 @dataclass(frozen=True, slots=True)

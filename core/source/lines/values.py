@@ -14,6 +14,9 @@ from .expressions import COMPUTE, Datum, Expression, Number, Operation, Truth, V
 from .program import Grammar
 from .statements import Numbers
 
+ONCE = " once"
+"""Ends the names of settings that hold for the next move alone."""
+
 
 @dataclass(frozen=True, slots=True)
 class Literal:
@@ -196,9 +199,6 @@ class Values:
         """Of a datum, ``R[1]``, ``PR[1,2]``; None if its number is not known."""
         numbers: list[str] = []
         parts = [part for part in (datum.index, datum.element) if part is not None]
-        if not parts:
-            once = f"{datum.word} once"
-            return once if once in self.registers else datum.word
         for part in parts:
             index = self.value(part)
             if isinstance(index, Unknown):
@@ -206,7 +206,10 @@ class Values:
             if isinstance(index, bool) or not float(index).is_integer():
                 raise SourceError(f"{datum.word} has whole numbers", datum.span)
             numbers.append(str(int(index)))
-        return f"{datum.word}[{','.join(numbers)}]"
+        name = f"{datum.word}[{','.join(numbers)}]" if numbers else datum.word
+        if datum.word in self._grammar.settings and f"{name}{ONCE}" in self.registers:
+            return f"{name}{ONCE}"
+        return name
 
 
 def element(name: str, k: int) -> str:

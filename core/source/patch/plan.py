@@ -155,8 +155,9 @@ class PatchPlan:
         """
         if self._options.shared is Sharing.REFUSE:
             who = f"is read by {listed(against)} as well, and that is to have another value"
+            names = {use.origin.datum, *use.origin.data} - {None}
             raise InputError(
-                f"{use.origin.datum or 'the literal'} "
+                f"{names.pop() if len(names) == 1 else 'the literal'} "
                 f"{who if against else 'does not state all of it'}: change them all alike, or "
                 f"have the move get its own ({switched('own')})"
             )
