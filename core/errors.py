@@ -79,6 +79,20 @@ class SourceError(FlybyError):
         self.span = span
 
 
+class PluginFault(SourceError):
+    """A plugin fails at a place of a program; what it raised is the cause."""
+
+    @classmethod
+    def of(cls, what: str, error: Exception, span: Span | None = None) -> PluginFault:
+        """What failed, with the exception and where it was raised."""
+        last = error.__traceback__
+        while last is not None and last.tb_next is not None:
+            last = last.tb_next
+        code = None if last is None else last.tb_frame.f_code
+        at = "" if code is None or last is None else f", {code.co_filename}:{last.tb_lineno}"
+        return cls(f"{what} fails: {type(error).__name__}: {error}{at}", span)
+
+
 class EntryError(SourceError):
     """Nobody says with which routine a program begins, and none is clearly the first."""
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..errors import FlybyError, InputError
+from ..errors import FlybyError, InputError, PluginFault
 from ..robot.arm_list import Listed
 from ..vendor import LANGUAGE_PARTS, Vendor
 from .loading import Offers
@@ -64,18 +65,23 @@ class _Guard:
             motion=self.named(f"the motion model of {vendor.name}", vendor.motion),
             label=self.named(f"the label of {vendor.name}", vendor.label),
             **language,
+            **self.files(vendor),
             listed=lambda: self.passed("its list of arms", lambda: _listed(vendor), {}),
             backups=None if opener is None else lambda: _Opener(self, opener),
         )
 
-    def robot(self, name: str, load: Callable[[], Any]) -> Callable[[], Robot]:
-        def loaded() -> Robot:
-            robot: Robot = load()
-            if not hasattr(robot, "name"):
-                raise TypeError(f"its loader gives no Robot, but {type(robot).__name__}")
-            return robot
+    def files(self, vendor: Vendor) -> dict[str, Any]:
+        """What reads a controller's own files."""
+        made: dict[str, Any] = {}
+        for name, kind in (("machine_data", _robot), ("described", _robot), ("stated", _figures)):
+            read = getattr(vendor, name)
+            if read is not None:
+                what = f"{name} of {vendor.name}"
+                made[name] = self.named(what, partial(_checked, kind, read))
+        return made
 
-        return self.named(f"robot {name}", loaded)
+    def robot(self, name: str, load: Callable[[], Any]) -> Callable[[], Robot]:
+        return self.named(f"robot {name}", partial(_checked, _robot, load))
 
     def logs(self, form: Any) -> Any:
         return replace(
@@ -98,6 +104,9 @@ class _Guard:
         def guarded_call(*given: Any) -> Value:
             try:
                 return call(*given)
+            except PluginFault as error:
+                told = f"the plugin {self._owner} is at fault: {what}: {error.message}"
+                raise PluginFault(told, error.span) from error.__cause__
             except FlybyError:
                 raise
             except Exception as error:
@@ -157,6 +166,26 @@ class _Opener:
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._opener, name)
+
+
+def _checked(kind: Callable[[Any], Value], call: Callable[..., Any], *given: Any) -> Value:
+    return kind(call(*given))
+
+
+def _robot(robot: Any) -> Any:
+    if not hasattr(robot, "name"):
+        raise TypeError(f"it gives no Robot, but {type(robot).__name__}")
+    return robot
+
+
+def _figures(found: Any) -> Mapping[str, Any]:
+    """Figures of a motion file, each with its value and its origin."""
+    if not isinstance(found, Mapping):
+        raise TypeError(f"it gives no figures by key, but {type(found).__name__}")
+    for key, one in found.items():
+        if not (isinstance(one, tuple) and len(one) == 2):
+            raise TypeError(f"{key}: it gives no value and origin, but {one!r}")
+    return found
 
 
 def _listed(vendor: Vendor) -> dict[str, Listed]:

@@ -11,7 +11,7 @@ from threading import current_thread, main_thread
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ...core.errors import FlybyError, SourceError
+from ...core.errors import FlybyError, PluginFault, SourceError
 from ...core.program.program import Program
 from ...core.source.patch.edits import difference
 from ...core.source.reading import Reading
@@ -93,6 +93,8 @@ class HostilityChecks(Subject):
         try:
             with _at_most(LONGEST, f"{self.name}: {_shown(text)} is read for"):
                 program = self.vendor.read(text, file)
+        except PluginFault as error:
+            raise AssertionError(f"{self.name}: {_shown(text)}: {error}") from error
         except SourceError as error:
             assert str(error)
             assert error.span is None or error.span.line >= 1

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from ...core.errors import FlybyError, Span
+from ...core.errors import FlybyError, PluginFault, Span
 from ...core.program.move import Move
 from ...core.program.origin import MoveOrigin, Origin, Ownership
 from ...core.program.program import Program
@@ -51,6 +51,8 @@ class PatchingChecks(Subject):
         before = reading_of(program)
         try:
             files = self.vendor.patch(change.program, robot)
+        except PluginFault:
+            raise
         except FlybyError as error:
             assert not must_be_patched(program, change), f"an owned {change.part}: {error}"
             return

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from ...core.dialect import Mention, Wording
-from ...core.errors import FlybyError, Span
+from ...core.errors import FlybyError, PluginFault, Span
 from ...core.program.arc_orientation import ArcOrientation
 from ...core.program.move import Move, MoveC
 from ...core.program.origin import Origin, Ownership
@@ -106,6 +106,8 @@ class SourceChecks(Subject):
                 new = getattr(change.program.moves[change.move], change.part)
                 try:
                     files = self.vendor.patch(change.program, robot)
+                except PluginFault:
+                    raise
                 except FlybyError as error:
                     assert not must_be_patched(program, change), told(
                         f"{what} is its own, and not patched: {error}",
@@ -141,6 +143,8 @@ class SourceChecks(Subject):
                     continue
                 try:
                     files = self.vendor.patch(change.program, self.vendor.robot(text.robot))
+                except PluginFault:
+                    raise
                 except FlybyError:
                     continue
                 after = reading_of(program).again(files)
@@ -314,6 +318,8 @@ def _with_literal_changed(
     file = reading.files[span.file]
     try:
         again = reading.again({span.file: file.edited([(span.start, span.end, new)])})
+    except PluginFault:
+        raise
     except FlybyError:
         return None
     return again if len(again.moves) == len(program.moves) else None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from flyby.core.errors import InputError, SourceError, Span
+from flyby.core.errors import InputError, PluginFault, SourceError, Span
 from flyby.core.hookspec import hookimpl
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
@@ -108,3 +109,32 @@ def test_whatever_a_plugin_raises_hides_no_other() -> None:
     point: Any = SimpleNamespace(name="odd", dist=dist, load=load)
     (broken,) = Registry.discover([point]).broken
     assert "flyby-odd is broken: Odd: no exception" in str(broken)
+
+
+def test_a_line_that_a_plugin_fails_at_is_named_with_the_plugin() -> None:
+    def breaks(*_: object) -> Any:
+        raise PluginFault("'GO a': the form 'motion' fails: KeyError", Span("a.odd", 3, 1, 0, 0))
+
+    reader = SimpleNamespace(read=breaks, read_file=breaks)
+    vendor = discovered(odd(reader=reader, suffixes=(".odd",))).find_vendor("odd")
+    said = (
+        r"^a\.odd:3:1: the plugin flyby-odd 1\.0 is at fault: the reader of odd: 'GO a': the form"
+    )
+    with pytest.raises(PluginFault, match=said):
+        vendor.read("x", "a.odd")
+
+
+@pytest.mark.parametrize("read", [fails, lambda *_: 3])
+def test_what_reads_a_controllers_files_names_the_plugin(read: Any) -> None:
+    vendor = discovered(odd(machine_data=read, described=read, stated=read)).find_vendor("odd")
+    robot, file = find_robot("ur/ur5e"), Path("machine.dat")
+    asked: dict[str, Callable[[], Any]] = {
+        "machine_data": lambda: vendor.as_described(robot, file),
+        "stated": lambda: vendor.as_stated(robot, file),
+        "described": lambda: vendor.described and vendor.described(file),
+    }
+    for what, ask in asked.items():
+        with pytest.raises(
+            InputError, match=f"^the plugin flyby-odd 1.0 is at fault: {what} of odd"
+        ):
+            ask()

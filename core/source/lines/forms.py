@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import ClassVar
 
-from ...errors import InputError
+from ...errors import FlybyError, InputError, PluginFault
 from ...program.signal import SetSignal
 from .expressions import (
     USUAL,
@@ -87,13 +87,24 @@ class FormGrammar(Grammar):
         said = self.settings.read(line, self.spelling)
         if said is not None:
             return said
-        for pattern, form in self._table:
+        for name, pattern, form in self._table:
             found = pattern.fullmatch(line.source.text, line.start, line.end)
             if found is not None:
-                return form(self, line, found)
+                return self._said(name, form, line, found)
         if self.driving.match(line.text):
             raise InputError("this form of a motion is not known, and it may move the robot")
         return self.kept(line)
+
+    def _said(self, name: str, form: Form, line: Line, found: Found) -> Said:
+        try:
+            return form(self, line, found)
+        except (FlybyError, ValueError):
+            raise
+        except Exception as error:
+            groups = ", ".join(found.re.groupindex) or "none"
+            form_of = f"the form {name!r} (groups: {groups}) of {type(self).__qualname__}"
+            what = f"{line.text!r}: {form_of}"
+            raise PluginFault.of(what, error, line.span) from error
 
     def parse(self, line: Line, found: Found, group: str) -> Expression:
         """The expression in a group."""
@@ -355,13 +366,24 @@ def _terms(value: Expression, sign: float = 1.0) -> Iterator[tuple[float, Datum]
         raise InputError("positions and registers of several numbers should stand here")
 
 
-def _table(kind: type[FormGrammar]) -> list[tuple[re.Pattern[str], Form]]:
-    """Patterns, and what they mean, of a language; each is made once."""
-    made: list[tuple[re.Pattern[str], Form]] | None = kind.__dict__.get("_made")
+def _table(kind: type[FormGrammar]) -> list[tuple[str, re.Pattern[str], Form]]:
+    """Names, patterns, and what they mean, of a language; each is made once.
+
+    Raises:
+        InputError: a form is called as no method, or its pattern is none.
+    """
+    made: list[tuple[str, re.Pattern[str], Form]] | None = kind.__dict__.get("_made")
     if made is None:
-        made = [
-            (re.compile(pattern, re.IGNORECASE | re.DOTALL), getattr(kind, name.partition(".")[0]))
-            for name, pattern in kind.forms.items()
-        ]
+        made = [_form(kind, name, pattern) for name, pattern in kind.forms.items()]
         kind._made = made  # type: ignore[attr-defined]
     return made
+
+
+def _form(kind: type[FormGrammar], name: str, pattern: str) -> tuple[str, re.Pattern[str], Form]:
+    method = getattr(kind, name.partition(".")[0], None)
+    if method is None:
+        raise InputError(f"forms of {kind.__qualname__}: {name!r} is called as no method of it")
+    try:
+        return name, re.compile(pattern, re.IGNORECASE | re.DOTALL), method
+    except re.error as error:
+        raise InputError(f"forms of {kind.__qualname__}: {name!r}: {error}") from None

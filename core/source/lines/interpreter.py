@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import NoReturn
 from weakref import proxy
 
-from ...errors import InputError, Note, SourceError, Span
+from ...errors import FlybyError, InputError, Note, PluginFault, SourceError, Span
 from ...program import call, move
 from ...program.move import Wait
 from ...program.program import Program
@@ -367,6 +367,12 @@ class _Interpreter:
             move = statement.build(numbers[0], numbers[1], numbers[2], numbers[3], self)
         except (InputError, ValueError) as error:
             raise SourceError(str(error), statement.span) from None
+        except FlybyError:
+            raise
+        except Exception as error:
+            text = self._program.text_of(statement.span)
+            name = getattr(statement.build, "__qualname__", "build").replace(".<locals>", "")
+            raise PluginFault.of(f"{text!r}: {name}", error, statement.span) from error
         target, speed, zone, via = (
             one and (replace(one[1], sources=()) if part in self._computed else one[1])
             for part, one in zip(("target", "speed", "zone", "via"), found, strict=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from ...dialect import Dialect
-from ...errors import InputError, Span
+from ...errors import FlybyError, InputError, PluginFault, Span
 from ...language import Sources
 from ...program.move import Move, Opaque, Wait
 from ...program.program import Program
@@ -181,7 +181,13 @@ class LineLanguage:
                     yield from self.comment(event.text)
                 move = replace(move, events=())
             check_said(move, self.dialect, self.name)
-            yield from writer.move(move)
+            try:
+                yield from writer.move(move)
+            except FlybyError:
+                raise
+            except Exception as error:
+                what = f"{type(writer).__qualname__}.move"
+                raise PluginFault.of(what, error, move.statement) from error
 
         def wait(wait: Wait) -> Iterable[str]:
             return (writer.wait(wait),)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Se
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
-from ...errors import InputError, SourceError, Span
+from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
 from ..text.files import SourceText, unbroken
 from .blocks import nested
 from .expressions import Datum, Value
@@ -169,11 +169,15 @@ def _statements(
 ) -> Iterator[tuple[Line, Statement]]:
     for line in lines(source):
         try:
-            said = grammar.statement(line)
+            said = several(grammar.statement(line))
         except (InputError, ValueError) as error:
             text = " ".join(source.text[line.start : line.end].split())
             raise SourceError(f"{text!r} is no {name} statement: {error}", line.span) from None
-        yield from ((line, one) for one in several(said))
+        except FlybyError:
+            raise
+        except Exception as error:
+            raise PluginFault.of(f"{line.text!r}: the grammar", error, line.span) from error
+        yield from ((line, one) for one in said)
 
 
 def several(said: Said) -> tuple[Statement, ...]:
