@@ -28,7 +28,8 @@ class PlantedFaults(Subject):
                 raise AssertionError(f"{mutant.name}: {check} is skipped: {skipped}") from skipped
             raise AssertionError(
                 told(
-                    f"{self.name}, with a fault planted ({mutant.name}), passes {check}",
-                    look="the golden texts: one of them should show the difference",
+                    f"{self.name}, with a fault planted ({mutant.name}), passes {check}: nothing "
+                    "in the golden file shows the difference",
+                    lines=[f"what would: {mutant.bites}"],
                 )
             )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ...core.vendor import Vendor
 from ..checks.subject import Subject
+from .biting import BITING
 
 
 def _anywhere(_: Subject) -> bool:
@@ -28,6 +29,11 @@ class Mutant:
     plant: Callable[[Vendor], Vendor]
     found_by: tuple[str, ...]
     needs: Callable[[Subject], bool] = _anywhere
+
+    @property
+    def bites(self) -> str:
+        """What an author writes down so that it shows."""
+        return BITING.get(self.name, "a golden text that reads otherwise with it")
 
     def __str__(self) -> str:
         return self.name.replace(" ", "_")

@@ -6,6 +6,7 @@ import pytest
 
 from flyby.testing.conformance import VendorConformance
 from flyby.testing.mutants import MUTANTS, Mutant
+from flyby.testing.mutants.biting import BITING
 
 from ..vendors.words import AbbWords, KukaWords, UrWords
 
@@ -43,9 +44,13 @@ def test_most_faults_concern_every_vendor() -> None:
         assert sum(mutant.needs(suite()) for mutant in MUTANTS) >= 50, suite
 
 
+def test_each_says_what_would_show_it() -> None:
+    assert set(BITING) == {mutant.name for mutant in MUTANTS}
+
+
 def test_a_fault_that_nobody_finds_is_reported() -> None:
-    harmless = Mutant("no fault at all", lambda vendor: vendor, MUTANTS[0].found_by)
-    with pytest.raises(AssertionError, match="no fault at all"):
+    harmless = Mutant("waits in ms", lambda vendor: vendor, MUTANTS[0].found_by)
+    with pytest.raises(AssertionError, match=r"\(waits in ms\).*\n.*what would: a wait for a time"):
         Ur().test_a_planted_fault_is_found(harmless)
 
 
