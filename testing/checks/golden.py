@@ -120,9 +120,15 @@ class GoldenChecks(Subject):
             if self.comment_sign and any(self.comment_sign in one for one in text.files.values()):
                 seen.add("comment")
         missing = sorted({*LANGUAGE, *self._words()} - seen - self.golden_none)
+        offers = []
+        if left := [word for word in missing if word in LANGUAGE]:
+            offers.append(f'of {", ".join(left)}: put it among none = ["…"] if there is none of it')
+        if said := [word for word in missing if word not in LANGUAGE]:
+            offers.append(f"of {', '.join(said)}: the dialect says that it has words for it")
         assert not missing, told(
             f"{self.name}: no golden text has: {', '.join(missing)}",
-            look='the golden file: add a text that says it, or put it among none = ["…"]',
+            lines=offers,
+            look="the golden file: add a text that says it",
         )
 
     def test_golden_texts_are_written_and_read_again(self) -> None:

@@ -33,7 +33,7 @@ class Data:
                 if value is not None:
                     values.put(name, value)
                     values.kinds[name] = setting.unit
-        for (word, number), held in program.data.items():
+        for (word, number), held in {**grammar.initial, **program.data}.items():
             name = word if number is None else f"{word}[{number}]"
             if isinstance(held, Numbers):
                 values.put_all(name, held)

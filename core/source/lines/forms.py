@@ -327,7 +327,7 @@ class FormGrammar(Grammar):
             if found["value"].strip().upper() in self.current:
                 return AssignAll(line.span, target, (), "where the running robot is")
             return AssignAll(line.span, target, tuple(_terms(self.parse(line, found, "value"))))
-        if target.word not in self.registers and target.word not in self.outputs:
+        if not self.holds(target.word) and target.word not in self.outputs:
             return Kept(line.span, target.word, "it does not move the robot")
         return Assign(line.span, target, self.parse(line, found, "value"))
 

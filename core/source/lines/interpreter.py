@@ -306,7 +306,7 @@ class _Interpreter:
         value = self._values.value(statement.value)
         name = self._values.name(statement.target)
         registers = self._values.registers
-        if statement.target.word in self._grammar.registers:
+        if self._grammar.holds(statement.target.word):
             if name is None:  # it may be any of them
                 unknown = Unknown("a register whose number is not known")
                 registers.update(dict.fromkeys(registers, unknown))

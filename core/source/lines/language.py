@@ -28,7 +28,7 @@ from .interpreter import run_lines
 from .motions import MotionWords
 from .patcher import patch_lines
 from .positions import PositionForm
-from .program import Grammar, Initial, LineProgram, plain_lines, read_lines
+from .program import Grammar, LineProgram, plain_lines, read_lines
 from .statements import Line
 
 
@@ -81,10 +81,6 @@ class LineLanguage:
     def lines(self, source: SourceText) -> Iterable[Line]:
         """What of a text is one statement each."""
         return plain_lines(source, self.trailing)
-
-    def initial(self) -> Initial:
-        """What registers hold at first, by word and number (`LineProgram.data`)."""
-        return {}
 
     def program(self, text: str, file: str) -> LineProgram:
         """The routines, points and data of one file."""
@@ -214,5 +210,4 @@ class LineLanguage:
         first, *others = (self.program(source.text, file) for file, source in files.items())
         for other in others:
             first = first.with_file(other)
-        data = {**self.initial(), **first.data}
-        return run_lines(replace(first, data=data), self.grammar(), options)
+        return run_lines(first, self.grammar(), options)

@@ -21,23 +21,34 @@ Said = Statement | Sequence[Statement] | None
 """What a line says: one statement, several, or nothing."""
 
 
+Initial = Mapping[tuple[str, int | None], Numbers | Value]
+"""What registers hold, by word and number; the number of one that there is once is None."""
+
+
 class Grammar:
     """What a language takes a line for.
 
     Attributes:
-        registers: words of data that the program itself sets and reads.
+        registers: words of data that the program itself sets and reads, one number each.
+        vectors: words of those that have several numbers, and how many.
+        initial: what registers hold before the program sets them; their words need not stand
+            among the others.
         outputs: words of outputs; all other words are asked of the answers.
-        vectors: words of registers that have several numbers, and how many; they need not stand
-            among ``registers``.
         argument: word of the registers that hold a routine's arguments.
         settings: what holds for the moves behind it until it is set again.
     """
 
     registers: Container[str] = frozenset()
-    outputs: Container[str] = frozenset()
     vectors: Mapping[str, int] = MappingProxyType({})
+    initial: Initial = MappingProxyType({})
+    outputs: Container[str] = frozenset()
     argument: str = ""
     settings: Settings = Settings()
+
+    def holds(self, word: str) -> bool:
+        """Whether data of a word are what the program has set them to."""
+        known = word in self.registers or word in self.vectors or word in self.settings
+        return known or any(word == one for one, _ in self.initial)
 
     def statement(self, line: Line) -> Said:
         """What a line says; None for nothing, a comment.
@@ -46,10 +57,6 @@ class Grammar:
             InputError, ValueError: it says nothing that there is; the line is named by the caller.
         """
         raise NotImplementedError
-
-
-Initial = Mapping[tuple[str, int | None], Numbers | Value]
-"""What registers hold, by word and number; the number of one that there is once is None."""
 
 
 @dataclass(frozen=True)

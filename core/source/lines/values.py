@@ -182,9 +182,7 @@ class Values:
         text = self._text_of(datum.span)
         if name is None:
             return Unknown(f"{text}, whose number is not known")
-        grammar, word = self._grammar, datum.word
-        own = word in grammar.registers or word in grammar.vectors or word in grammar.settings
-        if own and name in self.registers:
+        if name in self.registers and self._grammar.holds(datum.word):
             return self.registers[name]
         if datum.word in self._grammar.outputs and not self._course.changing(name):
             held = self.outputs.value(name)
