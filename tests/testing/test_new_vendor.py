@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,22 @@ def test_it_is_a_distribution(folder: Path) -> None:
     assert {"pyproject.toml", "README.md", "src/flyby_zeta/plugin.py"} <= files
     texts = [path.read_text("utf-8") for path in folder.rglob("*") if path.is_file()]
     assert not any(re.search(r"@\w+@", text) for text in texts)
+
+
+def test_it_is_built_by_what_builds_flyby(folder: Path, tmp_path: Path) -> None:
+    """Without a network: nothing is asked for but setuptools."""
+    pytest.importorskip("setuptools")
+    shutil.copytree(folder, tmp_path / "zeta")
+    build = "import sys; from setuptools.build_meta import build_wheel as b; b(sys.argv[1])"
+    command = [sys.executable, "-c", build, str(tmp_path)]
+    subprocess.run(command, cwd=tmp_path / "zeta", check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(wheel) as made:
+        names = made.namelist()
+        points = next(name for name in names if name.endswith("entry_points.txt"))
+        assert "zeta = flyby_zeta.plugin" in made.read(points).decode()
+    packed = {"flyby_zeta/language.py", "flyby_zeta/data/motion.toml"}
+    assert {*packed, "flyby_zeta/data/robots/arm-1.toml"} <= set(names)
 
 
 def own_tests(folder: Path, chosen: str) -> subprocess.CompletedProcess[str]:
