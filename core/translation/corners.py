@@ -168,7 +168,9 @@ def _first_guess(
     for kind in kinds:
         if isinstance(kind, ZoneKind):
             same = isinstance(corner.zone, VendorZone) and corner.zone.kind == kind
-            return corner.zone if same else kind.sized(0.5 * kind.largest)
+            distance = kind.reach is None and corner.reach >= _STILL
+            guess = corner.reach if distance else 0.5 * kind.largest
+            return corner.zone if same else kind.sized(guess)
         if kind is Radius:
             return _radius(dialect, corner)
         if kind is ContourFraction and joint:
@@ -205,6 +207,11 @@ def _size(zone: Zone) -> float:
     return zone.angle if isinstance(zone, Angle) else getattr(zone, "fraction", 0.0)
 
 
+def _is_distance(zone: Zone) -> bool:
+    """Whether its size is how far before the waypoint it begins, m."""
+    return isinstance(zone, Radius) or (isinstance(zone, VendorZone) and zone.kind.reach is None)
+
+
 Sized = TypeVar("Sized", bound=Zone)
 
 
@@ -233,8 +240,7 @@ def _better(zone: Zone, wanted: EmulatedCorner, found: EmulatedCorner) -> Zone:
     ratio = wanted.cut / found.cut
     if abs(ratio - 1.0) < _MET:
         return zone
-    full = isinstance(zone, Radius) and found.reach < size * _KEPT
-    if full:
+    if _is_distance(zone) and found.reach < size * _KEPT:
         # Larger has no effect: begin again from what is in effect.
         return zone if ratio > 1.0 else _resized(zone, found.reach * ratio)
     return _resized(zone, size * ratio)
@@ -242,7 +248,7 @@ def _better(zone: Zone, wanted: EmulatedCorner, found: EmulatedCorner) -> Zone:
 
 def _within(zone: Zone, found: EmulatedCorner) -> Zone:
     """The zone, no larger than the controller lets it be."""
-    if isinstance(zone, Radius) and found.passed and _STILL < found.reach < zone.tcp * _KEPT:
+    if _is_distance(zone) and found.passed and _STILL < found.reach < _size(zone) * _KEPT:
         zone = _resized(zone, found.reach * _KEPT)
     return _rounded(zone)
 

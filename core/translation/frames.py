@@ -10,9 +10,6 @@ from ..program.move import Move
 from ..program.tool import WORLD, Tool, WorkObject
 from ..spatial.pose import IDENTITY, Pose
 
-_DIGITS = 10
-"""Decimals of m."""
-
 
 @dataclass(frozen=True)
 class Frames:
@@ -60,7 +57,7 @@ class Frames:
     def pose(self, move: Move, pose: Pose) -> Pose:
         """A pose in the move's work object, in the work object that the new program has."""
         if self._folded(move) and move.work_object != WORLD:
-            return _rounded(self._seen(move.work_object.pose @ pose))
+            return self._seen(move.work_object.pose @ pose)
         return self._seen(pose) if move.work_object == WORLD else pose
 
     def loss(self, move: Move) -> str | None:
@@ -90,10 +87,4 @@ class Frames:
 
     def _seen(self, pose: Pose) -> Pose:
         """A pose in the old robot's world, in that of the new one, whose origin is its base."""
-        return pose if self.base == IDENTITY else _rounded(self.base.inverse() @ pose)
-
-
-def _rounded(pose: Pose) -> Pose:
-    """A pose without the digits that only the product of poses has put there."""
-    x, y, z = (round(value, _DIGITS) for value in pose.position)
-    return replace(pose, position=(x, y, z))
+        return pose if self.base == IDENTITY else self.base.inverse() @ pose

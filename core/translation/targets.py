@@ -27,14 +27,13 @@ from .alike import Likeness, Signs, differing
 from .emulation import Party, waypoints
 from .frames import Frames
 from .losses import LossesOfPart
+from .resolution import Resolution
 
 _MOST_TRIED = 12
 """Configurations of one target that are tried before the moves that follow are given up."""
 _LIMIT_SLACK = 1e-6
 _SAME = 1e-6
 """rad and m within which two configurations are one: rounding of inverse kinematics."""
-_DIGITS = 10
-"""Decimals of rad and m of joint values: those behind are rounding of inverse kinematics."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,6 @@ class _Anchor:
     Args:
         index: of the joint move; None for the start.
         goal: the move on the new robot; its target is a pose.
-        by_joints: whether the program gives it as joint values.
         old: the old robot's configuration there.
         stance: how it stands in it.
         tail: indices of the moves that follow.
@@ -52,7 +50,6 @@ class _Anchor:
 
     index: int | None
     goal: Move
-    by_joints: bool
     old: FloatArray
     stance: Signs
     tail: range
@@ -107,7 +104,8 @@ class Placer:
         named = [self._named(*pair) for pair in pairs]
         carried = program.with_moves(tuple(named))
         placed = replace(carried, start=None, notes=(), calls=(), reading=None)
-        return placed, _joint_target(self._target.robot, start)
+        few = Resolution(self._dialect, self._target.robot)
+        return few.program(placed), few.joints(_joint_target(self._target.robot, start))
 
     # ---------------------------------------------------------------- poses and frames
 
@@ -173,11 +171,10 @@ class Placer:
         leading = joints[0] if joints else len(moves)
         if program.start is not None or leading > 0:
             goal = self._start(program, moves, first)
-            yield _Anchor(None, goal, True, first, self._stance(first), range(leading))
+            yield _Anchor(None, goal, first, self._stance(first), range(leading))
         for i, end in zip(joints, ends, strict=True):
-            by_joints = isinstance(program.moves[i].target, JointTarget)
             tail = range(i + 1, end)
-            yield _Anchor(i, moves[i], by_joints, reached[i], self._stance(reached[i]), tail)
+            yield _Anchor(i, moves[i], reached[i], self._stance(reached[i]), tail)
 
     def _start(self, program: Program, moves: Sequence[Move], q: FloatArray) -> Move:
         """A joint move to where the robot stands at first."""
@@ -260,8 +257,6 @@ class Placer:
             return other, len(otherwise), float(np.abs(stand - before).sum())
 
         options.sort(key=rank)
-        if anchor.by_joints:
-            return [(otherwise, np.round(option, _DIGITS)) for otherwise, option in options]
         return options
 
     def _follow(self, moves: Sequence[Move], tail: range, q: FloatArray) -> FloatArray:

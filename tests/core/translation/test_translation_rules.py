@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from flyby.core.dialect import Orientation
 from flyby.core.errors import InputError, MotionError, Span
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.segments import make_segments
@@ -19,16 +20,18 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import Load, Tool, WorkObject
-from flyby.core.program.zone import FINE, Angle, ContourFraction, Fine, Radius, VendorZone
+from flyby.core.program.zone import FINE, Angle, ContourFraction, Fine, Radius, VendorZone, ZoneKind
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint
 from flyby.core.robot.posture import posture
+from flyby.core.source.lines.positions import PositionForm
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.core.translation.corners import corners_of
 from flyby.core.translation.emulation import Party
 from flyby.core.translation.half_turns import decided
 from flyby.core.translation.losses import Losses
+from flyby.core.translation.resolution import Resolution
 from flyby.core.translation.translate import translate
 from flyby.vendors.kuka.zone_kinds import C_VEL
 
@@ -115,6 +118,44 @@ def test_a_zone_that_is_cut_is_carried_over_as_it_is_driven(between) -> None:
     made = pair.translate(corner(pair, Radius(0.2)))
     expected = 0.06 * cut_share("abb") / cut_share("kuka")
     assert made.program.moves[1].zone.tcp == pytest.approx(expected, rel=1e-3)
+
+
+NEAR = ZoneKind("CNT", None, largest=1.0, unit=1e-3, step=1e-3)
+
+
+@pytest.mark.parametrize(("radius", "kind", "size"), [(0.029, "line", 0.029), (0.3, "line", 0.06)])
+def test_a_zone_of_a_kind_by_distance_is_as_large_as_it_acts(between, radius, kind, size) -> None:
+    """Not half of the largest that there is, where the line ends before."""
+    pair = between("kuka", "abb")
+    vendor, own = find_vendor("abb"), find_vendor("kuka").motion
+    words = replace(vendor.speaks.line, zones=(NEAR,))
+    speaks = replace(vendor.speaks, line=words, joint=replace(vendor.speaks.joint, zones=(NEAR,)))
+    made = translate(
+        corner(pair, Radius(radius), kind),
+        (find_vendor("kuka"), pair.robot(pair.old)),
+        (replace(vendor, motion=own, robot_motion={}, speaks=speaks), pair.robot(pair.new)),
+    )
+    zone = made.program.moves[1].zone
+    assert zone.kind == NEAR
+    assert size - 1.5e-3 < zone.size <= size + 1e-9
+
+
+def test_numbers_come_without_digits_that_arithmetic_has_added(between) -> None:
+    """Quaternions of eight digits become the angles that they stand for."""
+    pair = between("abb", "kuka")
+    tenth = Pose((0.6, 0.1, 0.3), (0.96592583, 0.0, 0.0, 0.25881905))
+    frame = WorkObject("table", user=tenth)
+    (made,) = (
+        Resolution(find_vendor("kuka").speaks, pair.robot(pair.new))
+        .program(Program((replace(pair.line(ASIDE), work_object=frame),)))
+        .moves
+    )
+    form = PositionForm(Orientation.EULER_ZYX)
+    wanted = pytest.approx((600, 100, 300, 30, 0, 0), abs=1e-12)
+    assert form.numbers(made.work_object.user) == wanted
+    home = JointTarget(tuple(np.radians([0, -90, 90, 0, 20, 0]) + 6e-11))
+    rounded = Resolution(find_vendor("kuka").speaks, pair.robot(pair.new)).joints(home)
+    assert np.degrees(rounded.joints) == pytest.approx([0, -90, 90, 0, 20, 0], abs=1e-13)
 
 
 def test_neighbouring_blends_do_not_touch_where_a_waypoint_would_be_left_out(between) -> None:
