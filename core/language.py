@@ -37,6 +37,15 @@ class Reader(Protocol):
 
 
 @runtime_checkable
+class Recogniser(Protocol):
+    """A reader that tells its language's texts from those of others, whose files end alike."""
+
+    def recognises(self, text: str) -> bool:
+        """Whether the beginning of a file is of its language."""
+        ...
+
+
+@runtime_checkable
 class Writer(Protocol):
     """Writes the vendor's source."""
 

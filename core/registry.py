@@ -15,8 +15,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NoReturn
 
 from . import hookspec
-from .door import called
-from .errors import InputError, UnknownNameError
+from .door import called, given
+from .errors import FlybyError, InputError, UnknownNameError
+from .language import Recogniser
 from .plugins.guard import guarded
 from .plugins.loading import (
     OWN_DISTRIBUTION,
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 
 _OFFERED = 12
 """Robots that a message offers at most."""
+_BEGINNING = 20_000
+"""Characters of a file that show its language."""
 _NEAR = 6
 """Of them those whose names are only like what was written."""
 
@@ -184,18 +187,31 @@ class Registry:
         )
 
     def reader_of(self, path: str | Path) -> Vendor:
-        """The vendor whose reader takes the file, by its suffix.
+        """The vendor whose reader takes the file, by its suffix, and where files of several end
+        alike, by what stands in it.
 
         Raises:
-            InputError: no vendor's reader, or more than one, takes such files.
+            InputError: no vendor's reader, or more than one, takes such a file.
+        """
+        found = self.readers_of(path)
+        if len(found) > 1:
+            names = " and ".join(v.name for v in found)
+            raise InputError(
+                f"{path}: it may be of {names}, and nothing in it tells: choose a robot "
+                f"({given('robot', f'{found[0].name}/…')}), which says whose it is"
+            )
+        return found[0]
+
+    def readers_of(self, path: str | Path) -> list[Vendor]:
+        """The vendors whose program a file may be: one, unless nothing in it tells.
+
+        Raises:
+            InputError: no vendor's reader takes such files.
         """
         suffix = Path(path).suffix.lower()
         found = [v for v in self.vendors.values() if suffix in v.suffixes]
-        if len(found) == 1:
-            return found[0]
         if found:
-            names = " and ".join(v.name for v in found)
-            raise InputError(f"{path}: {names} both read {suffix!r} files; name the vendor")
+            return found if len(found) == 1 else by_content(Path(path), found)
         known = ", ".join(
             f"{' '.join(v.suffixes)} ({v.name})" for v in self.vendors.values() if v.suffixes
         )
@@ -234,6 +250,27 @@ class Registry:
 
     def _broken(self, vendor: str) -> list[str]:
         return [str(plugin) for plugin in self.broken if plugin.plugin == vendor]
+
+
+def by_content(path: Path, vendors: Sequence[Vendor]) -> list[Vendor]:
+    """Those of several vendors whose language the beginning of a file is in.
+
+    If none knows it for its own, those are left that cannot tell; if all can, all of them.
+    """
+    from .source.text.files import read_source
+
+    try:
+        text = read_source(path).text[:_BEGINNING]
+    except FlybyError:
+        return list(vendors)
+    sure: list[Vendor] = []
+    silent: list[Vendor] = []
+    for vendor in vendors:
+        if not isinstance(vendor.reader, Recogniser):
+            silent.append(vendor)
+        elif vendor.reader.recognises(text):
+            sure.append(vendor)
+    return sure or silent or list(vendors)
 
 
 def all_listed(vendor: Vendor) -> list[Listed]:

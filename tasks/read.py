@@ -156,9 +156,14 @@ def _vendor_in(folder: Path) -> Vendor:
     Raises:
         InputError: none do, or those of several vendors.
     """
-    suffixes = {file.suffix.lower() for file in folder.iterdir()}
+    files = [file for file in folder.iterdir() if file.is_file()]
+    suffixes = {file.suffix.lower() for file in files}
     own = [v for v in registry().vendors.values() if suffixes & set(v.suffixes)]
     found = [v for v in own if suffixes & (set(v.suffixes) - _BESIDE_PROGRAMS)] or own
+    if len(found) > 1:  # files of several end alike
+        read = [file for file in files if any(file.suffix.lower() in v.suffixes for v in found)]
+        owners = [registry().readers_of(file) for file in read]
+        found = [v for v in found if any(v in each for each in owners)]
     if len(found) == 1:
         return found[0]
     if not found:
@@ -182,7 +187,7 @@ def _check_it_is_a_program(source: str | Path) -> None:
     if not path.exists():
         raise InputError(f"{path}: there is no such file or folder")
     if path.is_file():
-        registry().reader_of(path)
+        registry().readers_of(path)
 
 
 def from_ready_posture(

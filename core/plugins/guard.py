@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger("flyby")
 Value = TypeVar("Value")
-_METHODS = ("read", "read_file", "write", "patch", "record", "usual_period", "steps")
+_METHODS = ("read", "read_file", "write", "patch", "record", "usual_period", "steps", "recognises")
 """Of the parts of a language (`core.language`)."""
 
 

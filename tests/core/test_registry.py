@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from importlib import metadata
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -14,7 +15,7 @@ from flyby.core.errors import InputError, UnknownNameError
 from flyby.core.hookspec import VendorRegister, hookimpl
 from flyby.core.plugins.loading import BrokenPlugin
 from flyby.core.program.program import Program
-from flyby.core.registry import Registry
+from flyby.core.registry import Registry, vendors
 from flyby.core.vendor import Vendor
 
 
@@ -296,10 +297,56 @@ def test_a_reader_is_found_by_suffix() -> None:
     second = vendor("apex", reader=language, suffixes=(".txt",))
     registry = Registry({"acme": first, "apex": second})
     assert registry.reader_of("job/A.MOD") is first
-    with pytest.raises(InputError, match=r"acme and apex both read '\.txt'"):
+    with pytest.raises(InputError, match=r"of acme and apex, .*choose a robot \(robot=acme/"):
         registry.reader_of("a.txt")
     with pytest.raises(InputError, match=r"a.src: no vendor reads '.src' files; known: .txt .mod"):
         registry.reader_of("a.src")
+
+
+class Knowing(Language):
+    """A reader that knows its texts by a word."""
+
+    def __init__(self, word: str) -> None:
+        self.word = word
+
+    def recognises(self, text: str) -> bool:
+        return self.word in text
+
+
+def test_what_stands_in_a_file_tells_whose_it_is(tmp_path: Path) -> None:
+    known = {"acme": Knowing("GO"), "apex": Knowing("RUN"), "third": Language()}
+    registry = Registry({n: vendor(n, reader=r, suffixes=(".x",)) for n, r in known.items()})
+    file = tmp_path / "a.x"
+    for text, whose in (("GO 1", "acme"), ("RUN 1", "apex"), ("WALK", "third")):
+        file.write_text(text, "utf-8")
+        assert registry.reader_of(file).name == whose
+    file.write_text("GO and RUN", "utf-8")
+    with pytest.raises(InputError, match=r"a\.x: it may be of acme and apex, and nothing in it"):
+        registry.reader_of(file)
+    assert len(registry.readers_of(tmp_path / "absent.x")) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("job.mod", "MODULE job\nPROC main()\nMoveJ p1,v100,fine,tool0;\nENDPROC\nENDMODULE\n"),
+        ("job.mod", "  MoveL p1, v100, z10, tool0;\n"),
+        ("job.src", "&ACCESS RVP\nDEF job()\nPTP HOME\nEND\n"),
+        ("job.src", "GLOBAL DEF job( )\nEND\n"),
+        ("job.script", "def job():\n  movej([0,0,0,0,0,0])\nend\n"),
+        ("job.txt", "movel(p[0,0,0,0,0,0], a=1)\n"),
+    ],
+)
+def test_a_stranger_takes_no_file_of_the_built_in_vendors(
+    name: str, text: str, tmp_path: Path
+) -> None:
+    own = {v.name: v for v in vendors()}
+    stranger = vendor("acme", reader=Language(), suffixes=(".mod", ".src", ".script", ".txt"))
+    registry = Registry({**own, "acme": stranger})
+    (tmp_path / name).write_text(text, "utf-8")
+    assert registry.reader_of(tmp_path / name).name in ("abb", "kuka", "ur")
+    (tmp_path / name).write_text("POINT a 1 2 3\nGO a\n", "utf-8")
+    assert registry.reader_of(tmp_path / name) is stranger
 
 
 def test_a_file_beside_a_program_says_what_to_name() -> None:

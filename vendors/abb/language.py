@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,12 @@ if TYPE_CHECKING:
     from ...core.source.reading import Files, ReadOptions
 
 SUFFIXES = (".mod", ".modx", ".prg", ".sys", ".sysx", ".pgf")
+
+_BEGINS = re.compile(
+    r"^[ \t]*(?:%%%|MODULE\s|(?:LOCAL\s+|TASK\s+)?(?:PROC|FUNC|TRAP|PERS|CONST|VAR)\s+\w"
+    r"|Move(?:J|L|C|AbsJ)\s[^;\n]*;)",
+    re.M | re.I,
+)
 
 
 class Rapid:
@@ -34,6 +41,10 @@ class Rapid:
         from .run.reader import read_file
 
         return read_file(path, options)
+
+    def recognises(self, text: str) -> bool:
+        """See `flyby.core.language.Recogniser`."""
+        return _BEGINS.search(text) is not None
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
     from ...core.recording import Recording
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
+
+_BEGINS = re.compile(r"^[ \t]*(?:&\w+|(?:GLOBAL[ \t]+)?DEF(?:DAT|FCT)?[ \t]+\w)", re.M | re.I)
 
 
 class Krl:
@@ -35,6 +38,10 @@ class Krl:
 
         files = collect(path, options.others, options.beside)
         return read_with(files, str(path), options, read_sources)
+
+    def recognises(self, text: str) -> bool:
+        """See `flyby.core.language.Recogniser`."""
+        return _BEGINS.search(text) is not None
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from ...core.source.reading import Files, ReadOptions
 
 SUFFIXES = (".script", ".urp", ".urpx", ".urscript", ".txt")
+
+_BEGINS = re.compile(r"^[ \t]*(?:def\s+\w+\s*\([^)\n]*\)\s*:|(?:move[jlcp]|servoj)\s*\()", re.M)
 
 
 class UrScript:
@@ -30,6 +33,10 @@ class UrScript:
         from .run.reader import read_file
 
         return read_file(path, options)
+
+    def recognises(self, text: str) -> bool:
+        """See `flyby.core.language.Recogniser`."""
+        return _BEGINS.search(text) is not None or "<URProgram" in text
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""

@@ -28,7 +28,7 @@ from .interpreter import run_lines
 from .motions import MotionWords
 from .patcher import patch_lines
 from .positions import PositionForm
-from .program import Grammar, LineProgram, plain_lines, read_lines
+from .program import Grammar, LineProgram, mostly_said, plain_lines, read_lines
 from .statements import Line
 
 
@@ -137,6 +137,10 @@ class LineLanguage:
         names = (lambda text: ()) if self.called is None else self.called.findall
         files = with_called(path, options, (path.suffix.lower(),), names, self.always)
         return read_with(files, str(path), options, self._read)
+
+    def recognises(self, text: str) -> bool:
+        """Whether most lines are of the language (`core.language.Recogniser`)."""
+        return mostly_said(text, self.grammar(), self.lines)
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `core.language.Patcher`."""

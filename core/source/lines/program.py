@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import islice
 from types import MappingProxyType
 
 from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
@@ -12,9 +14,11 @@ from ..text.files import SourceText, unbroken
 from .blocks import nested
 from .expressions import Datum, Value
 from .settings import Settings
-from .statements import Body, Label, Line, NumberedPoint, Numbers, Routine, Statement
+from .statements import Body, Kept, Label, Line, NumberedPoint, Numbers, Routine, Statement
 
 _LINE = re.compile(r"[^\r\n]+")
+_ENOUGH = 200
+"""Lines that show a language."""
 
 
 Said = Statement | Sequence[Statement] | None
@@ -185,6 +189,23 @@ def _statements(
         except Exception as error:
             raise PluginFault.of(f"{line.text!r}: the grammar", error, line.span) from error
         yield from ((line, one) for one in said)
+
+
+def mostly_said(
+    text: str, grammar: Grammar, lines: Callable[[SourceText], Iterable[Line]] = plain_lines
+) -> bool:
+    """Whether a language takes more of the lines of a text's beginning for statements, or comments,
+    than it refuses and keeps."""
+    known = every = 0
+    try:
+        for line in islice(lines(SourceText(unbroken(text), "")), _ENOUGH):
+            every += 1
+            with suppress(FlybyError, ValueError):
+                said = several(grammar.statement(line))
+                known += not any(isinstance(one, Kept) for one in said)
+    except FlybyError:  # the text is none of its files
+        return False
+    return 2 * known > every
 
 
 def several(said: Said) -> tuple[Statement, ...]:

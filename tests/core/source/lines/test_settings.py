@@ -211,6 +211,12 @@ def test_what_is_said_before_a_move_is_read_again(tcp: float, size: float, which
         assert getattr(other.zone, "tcp", 0.0) == pytest.approx(getattr(one.zone, "tcp", 0.0))
 
 
+def test_a_language_knows_its_own_texts() -> None:
+    assert Language().recognises(POINTS + "SPEED 30 ALWAYS\nLMOVE a\nPRINT 3\n")
+    assert not Language().recognises("MODULE job\nMoveJ p1,v100,fine,tool0;\nENDMODULE\nWAIT 3")
+    assert not Language().recognises("")
+
+
 def test_settings_that_code_depends_on_are_found_in_the_text() -> None:
     text = "SPEED 30 ALWAYS\n  LMOVE a\nx = 1\naccel := 5\n"
     found = list(HELD.unsaid(re.compile("[JL]MOVE"))(text))
