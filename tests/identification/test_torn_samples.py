@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -54,6 +56,34 @@ def test_torn_samples_are_put_together(run, seed, delay, ahead) -> None:
     assert off.mean() < 0.25 * np.linalg.norm(found.off, axis=1).mean()
     assert np.median(np.abs(healed.q - whole)[again.rows]) < 3 * NOISE
     assert "mix joints of two cycles" in healed.notes[-1]
+
+
+@settings(max_examples=8, deadline=None)
+@given(seed=st.integers(0, 10**6), delay=st.floats(0.003, 0.008), lag=st.floats(0.0, 2e-3))
+def test_few_torn_samples_are_put_together(run, seed, delay, lag) -> None:
+    """Alone or two in a row, beside servos that follow at different distances."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, run.trajectory.duration, 0.008)
+    lags = lag * rng.uniform(-1.0, 1.0, 6)
+    whole = np.stack([joints(run, t - one)[:, j] for j, one in enumerate(lags)], -1)
+    whole += NOISE * rng.normal(size=whole.shape)
+    later = joints(run, t + delay) - joints(run, t)
+    breaks = np.zeros(len(t), dtype=int)
+    for first in rng.choice(np.arange(10, len(t) - 10, 10), 5, replace=False):
+        breaks[first : first + rng.integers(1, 3)] = rng.integers(1, 6)
+    q = whole + later * ((np.arange(6) >= breaks[:, None]) & (breaks > 0)[:, None])
+    log = replace(clean_samples(t, q), valid=np.ones(len(t), dtype=bool))
+    found = align(ROBOT, run.trajectory, log)
+    torn = find_torn(run.trajectory, found)
+    size = np.abs(q - whole).max(axis=1)[found.rows]
+    tear = size > 3e-4
+    if not tear.any():
+        return
+    assert torn is not None and torn.delay == pytest.approx(delay, rel=0.15)
+    healed = mended(log, run.trajectory, found, torn)
+    off = np.abs(healed.q - whole)[found.rows].max(axis=1)
+    # Two that differ side by side may hide each other.
+    assert np.mean(off[tear] < 0.2 * size[tear]) > 0.6
 
 
 @settings(max_examples=8, deadline=None)
