@@ -79,6 +79,26 @@ class TcpCurves(NamedTuple):
     prescribed: Curves
 
 
+class CurveTangents(NamedTuple):
+    """How the numbers of P curves change along K directions.
+
+    Args:
+        window: (P, 4, K).
+        control: (P, 6, D, K).
+        angle: (P, K).
+    """
+
+    window: FloatArray
+    control: FloatArray
+    angle: FloatArray
+
+    @staticmethod
+    def zeros(curves: Curves, directions: int) -> CurveTangents:
+        """Of curves that stay as they are."""
+        shapes = curves.window.shape, curves.control.shape, curves.angle.shape
+        return CurveTangents(*(np.zeros((*shape, directions)) for shape in shapes))
+
+
 class Samples(NamedTuple):
     """Where a path is sampled: σ and, for each channel, which curve is evaluated there (S,)."""
 
@@ -316,6 +336,43 @@ def pull(
     if curves.kind[piece] == ARC:
         gradient.angle[piece] += angle_bar / angle
     return sigma_bar
+
+
+@lean
+def push(
+    curves: Curves,
+    piece: int,
+    sigma: float,
+    basis: FloatArray,
+    tangents: CurveTangents,
+    sigma_dot: FloatArray,
+    value_dot: FloatArray,
+) -> None:
+    """Write how the value changes along K directions.
+
+    Args:
+        curves, piece, sigma, basis: as in `evaluate`.
+        tangents: of the curves.
+        sigma_dot: (K,), how σ changes.
+        value_dot: (D, K), written.
+    """
+    window, by_window = curves.window[piece], tangents.window[piece]
+    s0, s1, _, _ = parameter_jet(window, sigma)
+    count = _basis(curves, piece, s0, basis)
+    xi = (sigma - window[0]) / window[1]
+    entry, leave = _slope_jet(window, sigma, 0)[0], _slope_jet(window, sigma, 1)[0]
+    for k in range(sigma_dot.size):
+        moved = s1 * (sigma_dot[k] - by_window[0, k] - xi * by_window[1, k])
+        moved += entry * by_window[2, k] + leave * by_window[3, k]
+        if curves.kind[piece] == ARC:
+            # cos Θ s and sin Θ s change with Θ as with s, s / Θ times as fast.
+            moved += s0 / curves.angle[piece] * tangents.angle[piece, k]
+        for d in range(value_dot.shape[0]):
+            total = 0.0
+            for i in range(count):
+                total += tangents.control[piece, i, d, k] * basis[i, 0]
+                total += curves.control[piece, i, d] * basis[i, 1] * moved
+            value_dot[d, k] = total
 
 
 @inner

@@ -45,7 +45,7 @@ def cut(
     middle = 0.5 * (edge[1:] + edge[:-1])
     last = len(layout.segments.scale) - 1
     segment = np.clip(np.searchsorted(layout.waypoint, middle) - 1, 0, last)
-    curve, corner, inside = _curves(layout, middle, segment)
+    curve, corner, inside = curves_at(layout, middle, segment)
     kind = np.concatenate([layout.corners.kind, [STOP]])[corner]
     joint_corner = inside[:, POSITION] & (kind == JOINT_CORNER)
     joint_space = (layout.segments.ends.kind[segment] == JOINT_SEGMENT) | joint_corner
@@ -123,7 +123,7 @@ def _boundaries(layout: Layout) -> tuple[FloatArray, IntArray]:
     return sigma[keep], source[keep].astype(np.int64)
 
 
-def _curves(
+def curves_at(
     layout: Layout, middle: FloatArray, segment: IntArray
 ) -> tuple[IntArray, IntArray, NDArray[np.bool_]]:
     """Curve index (P, 3) of each channel, corner (P,) it may belong to, and whether (P, 3)."""

@@ -46,6 +46,15 @@ def pull_swivel(end: FloatArray, bar: FloatArray) -> FloatArray:
     return np.cross(end, by_end.T)
 
 
+def push_swivel(end: FloatArray, turned: FloatArray) -> FloatArray:
+    """How swivels change (M, 3, K) along small turns of the ends (M, 3, K)."""
+    ratio, slope = _ratio(end)
+    end_dot = np.cross(turned, end[:, :, None], axis=1)
+    along = (slope[:, None] * end_dot[:, 0])[:, None] * _across(end)[:, :, None]
+    across = np.stack([np.zeros_like(end_dot[:, 0]), -end_dot[:, 2], end_dot[:, 1]], 1)
+    return np.asarray(along + ratio[:, None, None] * across)
+
+
 def turn_shares(swivels: FloatArray, rotations: FloatArray) -> FloatArray:
     """κ (M,) of turns by rotation vectors a and b (M, 3); 1 where the tool does not turn."""
     one, two = (np.linalg.norm(part, axis=1) for part in (swivels, rotations))

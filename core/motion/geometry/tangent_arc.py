@@ -42,7 +42,7 @@ class TangentArcs:
     def write(self, position: Curves, slopes: FloatArray, count: int) -> None:
         """Put the arcs in place of the polynomial blends of curves ``count`` and on."""
         for i in np.flatnonzero(self.live):
-            arc = _Arc.of(self.reach[i], self.step[i])
+            arc = CornerArc.of(self.reach[i], self.step[i])
             position.kind[count + i] = ARC
             position.angle[count + i] = arc.deflection
             position.control[count + i] = 0.0
@@ -55,7 +55,7 @@ class TangentArcs:
 
 
 @dataclass(frozen=True)
-class _Arc:
+class CornerArc:
     """One arc: unit leg directions, leg lengths, zone radius, deflection, radius, inward normal."""
 
     lengths: FloatArray
@@ -68,7 +68,7 @@ class _Arc:
     inward: FloatArray
 
     @classmethod
-    def of(cls, reach: FloatArray, step: FloatArray) -> _Arc:
+    def of(cls, reach: FloatArray, step: FloatArray) -> CornerArc:
         lengths = np.linalg.norm(step, axis=1)
         first, second = step[0] / lengths[0], step[1] / lengths[1]
         cosine = float(first @ second)
@@ -118,7 +118,7 @@ def pull_tangent_arcs(
 ) -> None:
     """Reverse of `TangentArcs.write`; clears the arcs' rows of ``bar`` that it has used."""
     for i in np.flatnonzero(arcs.live):
-        arc = _Arc.of(arcs.reach[i], arcs.step[i])
+        arc = CornerArc.of(arcs.reach[i], arcs.step[i])
         centre, out, along = (bar.control[count + i, j].copy() for j in range(3))
         bar.control[count + i] = 0.0
         turn, radius, sine = arc.deflection, arc.radius, np.sin(arc.deflection)

@@ -136,7 +136,7 @@ def make_tcp_curves(layout: Layout, blend: Blend, orientation: Blend) -> TcpGeom
     turning = Curves.empty(2 * count - 1, 6, orientation.coefficients)
     turning.control[:count, 1] = np.concatenate([segments.turn_a, segments.turn_b], 1)
     turning.kind[count:] = POLYNOMIAL
-    _straight_controls(turning, count, reach[:, TURNING], *_turns(segments))
+    _straight_controls(turning, count, reach[:, TURNING], *turns_at_waypoints(segments))
     reference = segments.ends.rotation[:, 0]
     prescribed = Curves.empty(
         2 * count - 1, segments.delta_prescribed.shape[1], orientation.coefficients
@@ -183,7 +183,7 @@ def _blend_controls(blend: Blend, reach: FloatArray, before: Legs, after: Legs) 
     return controls
 
 
-def _turns(segments: Segments) -> tuple[FloatArray, FloatArray]:
+def turns_at_waypoints(segments: Segments) -> tuple[FloatArray, FloatArray]:
     """Turn rates (C, 6) of the legs before and after the waypoints, in the waypoint's orientation.
 
     R₀ exp(λ a) exp(λ b) is R_wp exp((λ − 1) a') exp((λ − 1) b) with a' = exp(−b) a.
@@ -311,7 +311,7 @@ def _pull_turning(
     count = len(segments.scale)
     segments_bar.turn_a += bar.control[:count, 1, :3]
     segments_bar.turn_b += bar.control[:count, 1, 3:]
-    into, out = _turns(segments)
+    into, out = turns_at_waypoints(segments)
     by_reach, into_bar, out_bar = _pull_straight(
         bar.control[count:], geometry.layout.corners.reach[:, TURNING], into, out
     )

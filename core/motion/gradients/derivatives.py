@@ -7,7 +7,6 @@ sample counts are held, so that at a tie between two of them the derivative is o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,6 @@ from ...arrays import FloatArray
 from ...errors import InputError
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
-from ...robot.kinematics.chain_kernels import jacobians
 from ..geometry.corners import ZoneGradient
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..path.configurations import located
@@ -26,6 +24,7 @@ from ..timing.timing import Timing
 from ..timing.torque import pull_torque_shares
 from .limits_gradient import SpeedGradient, pull_path_limits, pull_turning
 from .path_gradient import SINGULAR_TARGET, RouteGradient, pull_path
+from .segment_tangents import end_jacobians
 from .stamping_adjoint import stamp_adjoint
 from .timing_gradient import Seeds, pull_rests, seed_configuration
 
@@ -211,7 +210,7 @@ class Derivatives:
         """From the segments' ends, last waypoint first, to the targets; returns the start's."""
         route = self._path.route
         twist = np.concatenate([bar.ends.position, bar.ends.turn], axis=-1)
-        J = self._end_jacobians()
+        J = end_jacobians(route.ends.q, route.chains)
         back = _inverses(J[:, 1][..., route.solved])
         inherited = np.zeros(joints.shape[1])
         for k in range(len(route.moves) - 1, -1, -1):
@@ -326,16 +325,6 @@ class Derivatives:
             return q_bar @ back
         raise located(self._program.moves[index], index, problem)
 
-    def _end_jacobians(self) -> FloatArray:
-        """(M, 2, 6, N), at start and end of every segment, in its own chain."""
-        route = self._path.route
-        q = route.ends.q
-        J = np.empty((*q.shape[:2], 6, q.shape[2]))
-        for rows in _same(route.chains):
-            flat = np.ascontiguousarray(q[rows].reshape(-1, q.shape[2]))
-            J[rows] = jacobians(route.chains[rows[0]], flat).reshape(len(rows), 2, 6, -1)
-        return J
-
 
 def _inverses(J: FloatArray) -> FloatArray | None:
     """(M, 6, 6), of Jacobians (M, 6, n); NaN of singular ones, None if n is not six."""
@@ -345,11 +334,3 @@ def _inverses(J: FloatArray) -> FloatArray | None:
     back = np.linalg.inv(np.where(singular[:, None, None], np.eye(6), J))
     back[singular] = np.nan
     return np.asarray(back)
-
-
-def _same(chains: Sequence[object]) -> list[list[int]]:
-    """Indices grouped by identity."""
-    groups: dict[int, list[int]] = {}
-    for i, chain in enumerate(chains):
-        groups.setdefault(id(chain), []).append(i)
-    return list(groups.values())

@@ -9,7 +9,7 @@ joint moves alone q is linear in the waypoints and in how far the zones reach,
                     f and g are each corner's own where it is blended in time)
 
 so that the derivatives follow from those of ρ, which `zones.Reach` brings along. On other paths
-places are found between the path's samples, and there is no derivative.
+places are found between the path's samples, and change as `path_tangents` says.
 """
 
 from __future__ import annotations
@@ -22,12 +22,11 @@ from ...arrays import FloatArray, IntArray
 from ..geometry.corners import POSITION, STOP
 from ..geometry.joint_curves import quintics
 from ..geometry.reach import Reach
-from ..geometry.segments import JOINT_SEGMENT
 from ..model.blend import HERMITE
 from ..path.path import Path
+from .path_tangents import PathTangents
+from .segment_tangents import Directions, ReachTangents
 
-_HELD = {"joint_speed", "joint_acceleration", "joint_fraction", "joint_acceleration_fraction"}
-"""What a reach may depend on beside waypoints and sizes: it stays."""
 _GRID, _ZOOMS = 41, 3
 """Shares that are looked at, and how often more closely."""
 
@@ -51,33 +50,21 @@ class PathPlaces:
         )
 
 
-@dataclass(frozen=True)
-class Directions:
-    """K directions in which a path changes.
-
-    Args:
-        waypoints: (M + 1, N, K), of the configurations at the waypoints.
-        radii: (M − 1, K), of the zones' TCP radii (sizes of other kinds).
-    """
-
-    waypoints: FloatArray
-    radii: FloatArray
-
-
-def has_tangents(path: Path) -> bool:
-    """Whether `tangents` knows the path: joint moves alone."""
-    return bool((path.segments.ends.kind == JOINT_SEGMENT).all())
-
-
 def sigma_of(path: Path, places: PathPlaces) -> FloatArray:
     """(L,), σ of the places."""
-    begin, end = _parts(path)
-    return np.asarray(begin[places.part] + places.share * (end - begin)[places.part])
+    begin, end = _parts(path.layout.waypoint, path.layout.extent[:, POSITION])
+    return _between(begin, np.maximum(begin, end), places)
+
+
+def _between(begin: FloatArray, end: FloatArray, places: PathPlaces) -> FloatArray:
+    """Values at the places between those at beginning and end of all parts."""
+    share = places.share.reshape(-1, *[1] * (begin.ndim - 1))
+    return np.asarray(begin[places.part] + share * (end - begin)[places.part])
 
 
 def place_near(path: Path, sigma: float, q: FloatArray) -> PathPlaces:
     """The place on a path nearest to a configuration (N,), in the part that σ lies in."""
-    begin, end = _parts(path)
+    begin, end = _parts(path.layout.waypoint, path.layout.extent[:, POSITION])
     inside = (begin <= sigma) & (sigma <= end)
     part = int(np.argmax(inside)) if inside.any() else int(np.argmin(np.abs(begin - sigma)))
     lower, upper = 0.0, 1.0
@@ -91,7 +78,7 @@ def place_near(path: Path, sigma: float, q: FloatArray) -> PathPlaces:
 
 def configurations(path: Path, places: PathPlaces) -> FloatArray:
     """(L, N), the configurations at the places."""
-    if not has_tangents(path):
+    if not path.segments.joint_moves_alone:
         return _between_samples(path, sigma_of(path, places))
     base, entering, leaving = _weights(path, places)
     waypoints = _waypoints(path)
@@ -103,20 +90,45 @@ def configurations(path: Path, places: PathPlaces) -> FloatArray:
     return np.asarray(q + (reach[:, 1] * leaving)[:, None] * steps[after])
 
 
-def tangents(path: Path, places: PathPlaces, directions: Directions) -> FloatArray:
-    """(L, N, K), how the configurations at the places change along each direction.
+class Sensitivity:
+    """Forward derivatives of a path along K directions.
 
-    Raises:
-        ValueError: the path has moves of the TCP.
+    Args:
+        path: the path.
+        directions: of the change.
     """
-    if not has_tangents(path):
-        raise ValueError("tangents are known for paths of joint moves alone")
+
+    def __init__(self, path: Path, directions: Directions) -> None:
+        self._path, self._directions = path, directions
+        joints_alone = path.segments.joint_moves_alone
+        self._whole = None if joints_alone else PathTangents(path, directions)
+        self._reaches = ReachTangents(directions) if self._whole is None else self._whole.reaches
+
+    def reach(self, reach: Reach) -> FloatArray:
+        """(K,), how a reach, or the room between zones, changes."""
+        return self._reaches.of(reach)
+
+    def configurations(self, places: PathPlaces, q: FloatArray) -> FloatArray:
+        """(L, N, K), how the configurations q (L, N) at the places change."""
+        if self._whole is None:
+            return _tangents(self._path, places, self._directions, self._reaches)
+        layout = self._whole.layout
+        begin, end = _parts(layout.waypoint, layout.extent[:, POSITION])
+        sigma = sigma_of(self._path, places)
+        return self._whole.configurations(sigma, q, _between(begin, end, places))
+
+
+def _tangents(
+    path: Path, places: PathPlaces, directions: Directions, reaches: ReachTangents
+) -> FloatArray:
+    """(L, N, K) on paths of joint moves alone."""
     base, entering, leaving = _weights(path, places)
-    entering_dot, leaving_dot = _weight_dots(path, places, directions)
+    entering_dot, leaving_dot = _weight_dots(path, places, directions.count, reaches)
     steps = np.diff(_waypoints(path), axis=0)
     steps_dot = np.diff(directions.waypoints, axis=0)
     before, after = _neighbours(path, places)
-    reach, reach_dot = _reach(path, places), _reach_dots(path, places, directions)
+    reach = _reach(path, places)
+    reach_dot = _combined(path, places, reaches.of_corners(path.corners)[:, POSITION], 0.0)
     out = directions.waypoints[base].copy()
     for side, weight, weight_dot, segment in (
         (0, entering, entering_dot, before),
@@ -129,31 +141,19 @@ def tangents(path: Path, places: PathPlaces, directions: Directions) -> FloatArr
     return np.asarray(out)
 
 
-def reach_tangent(reach: Reach, directions: Directions) -> FloatArray:
-    """(K,), how a reach, or the room between zones, on a path of joint moves changes."""
-    total = np.zeros(directions.radii.shape[1])
-    for name, index, part in reach.parts:
-        if name == "tcp":
-            total += part * directions.radii[index]
-        elif name in ("q0", "q1"):
-            total += np.asarray(part) @ directions.waypoints[index + int(name[1])]
-        elif name not in _HELD:
-            raise ValueError(f"no tangent is known of {name}")
-    return total
-
-
 def _waypoints(path: Path) -> FloatArray:
     q = path.segments.ends.q
     return np.concatenate([q[:1, 0], q[:, 1]])
 
 
-def _parts(path: Path) -> tuple[FloatArray, FloatArray]:
-    """σ at beginning and end of all parts, (2 M − 1,) each."""
-    waypoint, extent = path.layout.waypoint, path.layout.extent[:, POSITION]
-    before, after = np.append(extent[:, 0], 0.0), np.insert(extent[:, 1], 0, 0.0)
+def _parts(waypoint: FloatArray, extent: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """σ at beginning and end of all parts (2 M − 1, ...), from that of the waypoints (M + 1, ...)
+    and the extents of the zones (M − 1, 2, ...); or how they change."""
+    none = np.zeros((1, *extent.shape[2:]))
+    before, after = np.concatenate([extent[:, 0], none]), np.concatenate([none, extent[:, 1]])
     begin = np.concatenate([waypoint[:-1] + after, waypoint[1:-1] - extent[:, 0]])
     end = np.concatenate([waypoint[1:] - before, waypoint[1:-1] + extent[:, 1]])
-    return begin, np.maximum(begin, end)
+    return begin, end
 
 
 def _neighbours(path: Path, places: PathPlaces) -> tuple[IntArray, IntArray]:
@@ -191,18 +191,16 @@ def _quintics(path: Path, places: PathPlaces) -> FloatArray:
 
 
 def _weight_dots(
-    path: Path, places: PathPlaces, directions: Directions
+    path: Path, places: PathPlaces, count: int, reaches: ReachTangents
 ) -> tuple[FloatArray, FloatArray]:
     """(L, K) each, derivatives of f and g in corners that are blended in time; else zero."""
-    dots = np.zeros((2, len(places.part), directions.radii.shape[1]))
+    dots = np.zeros((2, len(places.part), count))
     for i, blend in path.corners.timed.items():
         rows = np.flatnonzero(places.part == len(path.segments.scale) + i)
         powers = places.share[rows, None] ** np.arange(HERMITE.shape[1])
         for leg in range(2):
             for basis, reach in ((1 + leg, blend.rates[leg]), (4 + leg, blend.bends[leg])):
-                dots[leg, rows] += np.outer(
-                    powers @ HERMITE[basis], reach_tangent(reach, directions)
-                )
+                dots[leg, rows] += np.outer(powers @ HERMITE[basis], reaches.of(reach))
     return dots[0], dots[1]
 
 
@@ -230,16 +228,6 @@ def _combined(path: Path, places: PathPlaces, reach: FloatArray, whole: float = 
     corner = (places.part - count)[zone]
     out[zone] = reach[corner]
     return out
-
-
-def _reach_dots(path: Path, places: PathPlaces, directions: Directions) -> FloatArray:
-    """(L, 2, K), derivatives of ρ₀ and ρ₁."""
-    corners, size = path.corners, directions.radii.shape[1]
-    dots = np.zeros((len(corners.kind), 2, size))
-    for i, pairs in enumerate(corners.sources):
-        if corners.kind[i] != STOP:
-            dots[i] = [reach_tangent(reach, directions) for reach in pairs[POSITION]]
-    return _combined(path, places, dots, 0.0)
 
 
 def _between_samples(path: Path, sigma: FloatArray) -> FloatArray:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....core.arrays import FloatArray, IntArray
 from ....core.errors import MotionError, Note
@@ -15,21 +13,21 @@ from ....core.motion.emulator.controller import Controller
 from ....core.motion.geometry.corners import Room
 from ....core.motion.geometry.segments import left_jacobian
 from ....core.motion.geometry.zones import ZonePlanner
+from ....core.motion.gradients.path_gradient import SINGULAR_TARGET
+from ....core.motion.gradients.segment_tangents import SIZES, Directions, end_jacobians
 from ....core.motion.gradients.sensitivity import (
-    Directions,
     PathPlaces,
+    Sensitivity,
     configurations,
-    has_tangents,
     place_near,
-    reach_tangent,
-    tangents,
 )
 from ....core.motion.path.path import Path
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
-from ....core.robot.kinematics.chain_kernels import jacobians
+from ....core.program.target import JointTarget, PoseTarget
 from .blocks import MoveBlock
-from .parts import JointPoint, PosePoint, ViaPoint
+from .parts import JointPoint, PosePoint, ZonePart
+from .variables import ProgramVariables
 
 _STRAIGHT, _ZONE = 0.05, 16
 """rad of joint motion (or its like in m of path, see `segments`) between places on straight parts;
@@ -37,10 +35,6 @@ intervals of a zone."""
 _LEAST, _MOST = 4, 60
 _CROWD = 25
 """Places of a crowd."""
-_DIFFERENCE = 1e-4
-"""Step of difference quotients, in units of a variable's scale."""
-_REACHES = 3
-"""Waypoints that many moves apart change no stretch of the path in common."""
 
 
 @dataclass(frozen=True)
@@ -76,20 +70,6 @@ class Change:
     q: FloatArray
     rooms: FloatArray
     waypoints: FloatArray
-
-
-class _Shifted:
-    """A path beside that of a drive.
-
-    Args:
-        path: the path.
-        places: at which its configurations count.
-    """
-
-    def __init__(self, path: Path, places: PathPlaces) -> None:
-        self.path = path
-        self.rooms = rooms_of(path)
-        self.q = configurations(path, places)
 
 
 def drivable(
@@ -174,141 +154,23 @@ class Driver:
         return (program, path) if path.route.moves == self._first.route.moves else None
 
     def change(self, drive: DrivenBlock, which: IntArray) -> Change:
-        """Derivatives at a drive, for some of the places."""
+        """Derivatives at a drive, for some of the places.
+
+        Raises:
+            MotionError: a pose target is singular.
+        """
         places = PathPlaces(self.places.part[which], self.places.share[which])
-        if has_tangents(drive.path):
-            return self._by_formulas(drive, places)
-        return self._by_differences(drive, which)
-
-    def _path(self, x: FloatArray) -> Path:
-        return self.controller.plan(self.variables.applied(x))
-
-    # ---------------------------------------------------------- paths of joint moves alone
-
-    def _by_formulas(self, drive: DrivenBlock, places: PathPlaces) -> Change:
-        directions = self._directions(drive)
-        rooms = [reach_tangent(room.left, directions) for room in drive.rooms]
+        directions = directions_of(self.variables, drive)
+        made = Sensitivity(drive.path, directions)
+        rooms = [made.reach(room.left) for room in drive.rooms]
         return Change(
-            tangents(drive.path, places, directions),
+            made.configurations(places, drive.q[which]),
             np.array(rooms).reshape(len(rooms), self.variables.size),
             directions.waypoints,
         )
 
-    def _directions(self, drive: DrivenBlock) -> Directions:
-        """One direction for each variable."""
-        path, variables = drive.path, self.variables
-        count, axes = path.segments.ends.q.shape[0], path.segments.ends.q.shape[2]
-        made = Directions(
-            np.zeros((count + 1, axes, variables.size)), np.zeros((count - 1, variables.size))
-        )
-        waypoint = {move: k + 1 for k, move in enumerate(path.route.moves)}
-        corner = {move: k for k, move in enumerate(path.route.zone_moves)}
-        for index, part in enumerate(variables.parts):
-            columns = np.arange(variables.offsets[index], variables.offsets[index + 1])
-            for move in part.moves:
-                if isinstance(part, JointPoint):
-                    slope = part.slope(variables.of(index, drive.x))
-                    rows = np.array(part.axes)[:, None]
-                    made.waypoints[waypoint[move], rows, columns] = slope
-                elif isinstance(part, PosePoint):
-                    turned = variables.of(index, drive.x)
-                    k = waypoint[move]
-                    made.waypoints[k][:, columns] = _pose_tangents(path, k, turned)
-                else:
-                    made.radii[corner[move], columns] = 1.0
-        return made
-
-    # ------------------------------------------------------------------- all other paths
-
-    def _by_differences(self, drive: DrivenBlock, which: IntArray) -> Change:
-        """Difference quotients; variables that change nothing in common are moved at once."""
-        variables = self.variables
-        step = _DIFFERENCE * variables.scale
-        count, axes = drive.path.segments.ends.q.shape[0], drive.q.shape[1]
-        made = Change(
-            np.zeros((len(which), axes, variables.size)),
-            np.zeros((len(drive.rooms), variables.size)),
-            np.zeros((count + 1, axes, variables.size)),
-        )
-        places = PathPlaces(self.places.part[which], self.places.share[which])
-        for together in self._colours:
-            moved = drive.x.copy()
-            moved[together] += step[together]
-            sign = 1.0
-            planned = self._planned(moved)
-            if planned is None:
-                sign = -1.0
-                moved[together] -= 2.0 * step[together]
-                planned = self._planned(moved)
-            other = None if planned is None else _Shifted(planned[1], places)
-            if other is None or len(other.rooms) != len(drive.rooms):
-                continue
-            self._take(drive, other, which, together, sign * step, made)
-        return made
-
-    def _take(
-        self,
-        drive: DrivenBlock,
-        other: _Shifted,
-        which: IntArray,
-        together: IntArray,
-        step: FloatArray,
-        made: Change,
-    ) -> None:
-        """Difference quotients of variables that were moved at once."""
-        by_place = other.q - drive.q[which]
-        pairs = zip(drive.rooms, other.rooms, strict=True)
-        by_room = np.array([b.left.value - a.left.value for a, b in pairs])
-        by_waypoint = _waypoints(other.path) - _waypoints(drive.path)
-        near_place = self._near(_place_waypoints(drive.path, self.places, which))
-        near_room = self._near(np.array([[r.corner + 0.0, r.corner + 2.0] for r in drive.rooms]))
-        near_waypoint = self._near(np.stack([np.arange(len(by_waypoint)) * 1.0] * 2, -1))
-        for column in together:
-            rows = near_place[:, column]
-            made.q[rows, :, column] = by_place[rows] / step[column]
-            rows = near_waypoint[:, column]
-            made.waypoints[rows, :, column] = by_waypoint[rows] / step[column]
-            if len(by_room):
-                rows = near_room[:, column]
-                made.rooms[rows, column] = by_room[rows] / step[column]
-
-    @cached_property
-    def _owners(self) -> list[FloatArray]:
-        """The waypoints that each variable changes."""
-        waypoint = {move: k + 1 for k, move in enumerate(self._first.route.moves)}
-        corner = {move: k + 1 for k, move in enumerate(self._first.route.zone_moves)}
-        owners: list[FloatArray] = []
-        for part in self.variables.parts:
-            known = waypoint if isinstance(part, ViaPoint) else corner
-            owners += [np.array([known[move] for move in part.moves], dtype=float)] * part.size
-        return owners
-
-    def _near(self, spans: FloatArray) -> NDArray[np.bool_]:
-        """(len(spans), n), which variables' waypoints lie in spans (., 2) of waypoints."""
-        if not len(spans):
-            return np.zeros((0, self.variables.size), dtype=bool)
-        columns = [
-            ((spans[:, :1] <= own) & (own <= spans[:, 1:])).any(axis=1) for own in self._owners
-        ]
-        return np.stack(columns, -1)
-
-    @cached_property
-    def _colours(self) -> list[IntArray]:
-        """Variables that may be moved at once: one component each of distant waypoints."""
-        colours: list[list[int]] = []
-        taken: list[FloatArray] = []
-        for column, own in enumerate(self._owners):
-            for colour, others in zip(colours, taken, strict=True):
-                if np.abs(own[:, None] - others).min() >= _REACHES:
-                    colour.append(column)
-                    break
-            else:
-                colours.append([column])
-                taken.append(own)
-                continue
-            index = next(i for i, colour in enumerate(colours) if column in colour)
-            taken[index] = np.concatenate([taken[index], own])
-        return [np.array(colour) for colour in colours]
+    def _path(self, x: FloatArray) -> Path:
+        return self.controller.plan(self.variables.applied(x))
 
 
 def crowd(path: Path, sigma: float, q: FloatArray, density: int) -> PathPlaces:
@@ -341,11 +203,6 @@ def rooms_of(path: Path) -> tuple[Room, ...]:
     return tuple(planner.rooms(route.zones))
 
 
-def _waypoints(path: Path) -> FloatArray:
-    q = path.segments.ends.q
-    return np.concatenate([q[:1, 0], q[:, 1]])
-
-
 def _places(path: Path, density: int) -> PathPlaces:
     """In order along the path: straight part, zone, straight part, …"""
     counts = _counts(path, density)
@@ -364,22 +221,91 @@ def _places(path: Path, density: int) -> PathPlaces:
     return PathPlaces(np.concatenate(part), np.concatenate(share))
 
 
-def _place_waypoints(path: Path, places: PathPlaces, which: IntArray) -> FloatArray:
-    """(K, 2), first and last waypoint whose variables change a place."""
-    count = len(path.segments.scale)
-    part = places.part[which]
-    zone = part >= count
-    middle = np.where(zone, part - count + 1, part)
-    return np.stack([middle - zone, middle + 1], -1).astype(float)
+def directions_of(variables: ProgramVariables, drive: DrivenBlock) -> Directions:
+    """One direction for each variable.
 
-
-def _pose_tangents(path: Path, waypoint: int, turned: FloatArray) -> FloatArray:
-    """(N, 6), how the configuration at a waypoint changes with its pose target's variables."""
+    Raises:
+        MotionError: a pose target is singular.
+    """
+    path, size = drive.path, variables.size
     route = path.route
-    q = np.ascontiguousarray(_waypoints(path)[waypoint : waypoint + 1])
-    J = jacobians(route.chains[waypoint - 1], q)[0][:, route.solved]
-    twist = np.eye(6)
-    twist[3:, 3:] = left_jacobian(turned[3:])
-    out = np.zeros((q.shape[1], 6))
-    out[route.solved] = np.linalg.solve(J, twist)
-    return out
+    joints, twists = _at_targets(variables, drive)
+    waypoints = np.zeros((len(route.moves) + 1, path.q.shape[1], size))
+    J = end_jacobians(route.ends.q, route.chains)[:, 1]
+    for k, move in enumerate(route.moves):
+        target = drive.program.moves[move].target
+        found = waypoints[k + 1]
+        # Axes that a target does not name keep the value that they had at the one before.
+        named = route.robot.arm_size + len(target.external)
+        found[named:] = waypoints[k, named:]
+        if isinstance(target, JointTarget):
+            found[:named] = joints[k, :named]
+        else:
+            _solve(path, k, target, J[k], waypoints[k], twists[k], found)
+    sizes = {name: np.zeros((len(route.zone_moves), size)) for name in SIZES}
+    corner = {move: k for k, move in enumerate(route.zone_moves)}
+    for index, part in enumerate(variables.parts):
+        if isinstance(part, ZonePart):
+            column = variables.offsets[index]
+            for k in (corner[move] for move in part.moves if move in corner):
+                for name, rate in zip(SIZES, part.rates(), strict=True):
+                    sizes[name][k, column] = rate
+    return Directions(waypoints, sizes)
+
+
+def _at_targets(variables: ProgramVariables, drive: DrivenBlock) -> tuple[FloatArray, FloatArray]:
+    """How the joints (M, N, n) of joint targets and the poses (M, 6, n) of pose targets change."""
+    path, size = drive.path, variables.size
+    joints = np.zeros((len(path.route.moves), path.q.shape[1], size))
+    twists = np.zeros((len(path.route.moves), 6, size))
+    waypoint = {move: k for k, move in enumerate(path.route.moves)}
+    for index, part in enumerate(variables.parts):
+        own, values = variables.columns(index), variables.of(index, drive.x)
+        for k in (waypoint[move] for move in part.moves if move in waypoint):
+            if isinstance(part, JointPoint):
+                joints[k, list(part.axes), own] = part.slope(values)
+            elif isinstance(part, PosePoint):
+                twists[k, :3, own] = np.eye(3, 6)
+                twists[k, 3:, own][:, 3:] = left_jacobian(values[3:])
+    return joints, twists
+
+
+def _solve(
+    path: Path,
+    k: int,
+    target: PoseTarget,
+    J: FloatArray,
+    before: FloatArray,
+    twist: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Write how the configuration (N, n) at the pose target of segment k changes.
+
+    Args:
+        path, k, target: the path, the segment, and its target.
+        J: (6, N), there.
+        before: (N, n), how the configuration at the waypoint before changes.
+        twist: (6, n), how the pose changes.
+        found: written; the axes that the target does not name stand there already.
+
+    Raises:
+        MotionError: it is singular.
+    """
+    route, arm = path.route, path.route.robot.arm_size
+    q = route.ends.q[k, 1]
+    solved, prescribed = route.solved, route.prescribed
+    if target.arm_angle is not None:
+        # The arm angle stays, and tells where the third axis stands.
+        J = np.vstack([J, np.zeros((1, J.shape[1]))])
+        J[6, :arm] = route.robot.arm_angle_slope(q)
+        twist = np.vstack([twist, np.zeros((1, twist.shape[1]))])
+        solved, prescribed = np.arange(arm), np.arange(arm, len(q))
+    else:
+        redundant = prescribed[prescribed < arm]
+        found[redundant] = before[redundant]
+    square = J[:, solved]
+    if not np.linalg.cond(square) < SINGULAR_TARGET:
+        raise MotionError(
+            "the arm is singular at the target, where derivatives do not exist", route.moves[k]
+        )
+    found[solved] = np.linalg.solve(square, twist - J[:, prescribed] @ found[prescribed])

@@ -200,6 +200,17 @@ class ZonePart(ProgramPart):
         applied = self.applied(move, values)
         return replace(applied, zone=rounding.zone(applied.zone))
 
+    @abstractmethod
+    def rates(self) -> tuple[float, float, float, float]:
+        """How fast the zone's radius (or size of another kind), radius of reorientation and of
+        external axes, and angle change with the variable."""
+
+    def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
+        rows = list(self.moves)
+        sizes = made.zone, made.zone_reorientation, made.zone_external, made.zone_angle
+        pairs = zip(sizes, self.rates(), strict=True)
+        return np.array([sum(float(size[rows].sum()) * rate for size, rate in pairs)])
+
 
 @dataclass(frozen=True)
 class ZoneRadius(ZonePart):
@@ -229,17 +240,12 @@ class ZoneRadius(ZonePart):
         zone = Radius(radius) if self.zone.tcp == 0.0 else self.zone.resized(radius)
         return replace(move, zone=zone)
 
-    def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
-        rows = list(self.moves)
-        total = float(made.zone[rows].sum())
-        if self.zone.tcp > 0.0:
-            for name, part in (
-                ("zone_reorientation", self.zone.reorientation),
-                ("zone_external", self.zone.external),
-                ("zone_angle", self.zone.angle),
-            ):
-                total += float(getattr(made, name)[rows].sum()) * part / self.zone.tcp
-        return np.array([total])
+    def rates(self) -> tuple[float, float, float, float]:
+        if self.zone.tcp == 0.0:
+            return 1.0, 0.0, 0.0, 0.0
+        parts = self.zone.reorientation, self.zone.external, self.zone.angle
+        turning, external, angle = (part / self.zone.tcp for part in parts)
+        return 1.0, turning, external, angle
 
 
 @dataclass(frozen=True)
@@ -275,5 +281,5 @@ class ZoneShare(ZonePart):
             return replace(move, zone=replace(self.zone, size=size))
         return replace(move, zone=ContourFraction(size))
 
-    def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
-        return np.array([made.zone[list(self.moves)].sum()])
+    def rates(self) -> tuple[float, float, float, float]:
+        return 1.0, 0.0, 0.0, 0.0

@@ -13,14 +13,12 @@ from flyby.core.arrays import FloatArray
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.corners import Room
 from flyby.core.motion.geometry.zones import ZonePlanner
+from flyby.core.motion.gradients.segment_tangents import Directions
 from flyby.core.motion.gradients.sensitivity import (
-    Directions,
     PathPlaces,
+    Sensitivity,
     configurations,
-    has_tangents,
-    reach_tangent,
     sigma_of,
-    tangents,
 )
 from flyby.core.motion.model.blend import PARABOLA, Blend
 from flyby.core.motion.model.motion_model import MotionModel
@@ -112,12 +110,12 @@ def test_tangents_are_difference_quotients(
     ]
     assume(np.allclose(*slopes, atol=1e-3))
     assume(all(abs(room.left.value) > 1e-3 for room in rooms(path)))
-    made = Directions(q_dot[:, :, None], zone_dot[:, None])
+    made = Sensitivity(path, Directions(q_dot[:, :, None], {"tcp": zone_dot[:, None]}))
     q0, q1, q2 = (configurations(one, places) for one in (before, path, after))
     assume(np.allclose(q1 - q0, q2 - q1, rtol=0.0, atol=1e-4 * STEP))
     wanted = (q2 - q0) / (2 * STEP)
-    assert tangents(path, places, made)[:, :, 0] == pytest.approx(wanted, abs=2e-5, rel=1e-5)
-    found = [float(reach_tangent(room.left, made)[0]) for room in rooms(path)]
+    assert made.configurations(places, q1)[:, :, 0] == pytest.approx(wanted, abs=2e-5, rel=1e-5)
+    found = [float(made.reach(room.left)[0]) for room in rooms(path)]
     assert found == pytest.approx(np.mean(slopes, axis=0), abs=1e-5, rel=1e-4)
 
 
@@ -153,7 +151,7 @@ def test_no_room_below_zero_means_no_zone_is_cut(
     assert cut == (least < 0.0)
 
 
-def test_paths_of_the_tcp_have_places_but_no_tangents() -> None:
+def test_paths_of_the_tcp_have_places() -> None:
     start = JointTarget((0.0, 0.3, 0.2, 0.0, 0.9, 0.0))
     driver = controller(PARABOLA)
     here = driver.plan(
@@ -179,11 +177,8 @@ def test_paths_of_the_tcp_have_places_but_no_tangents() -> None:
         for n, p in enumerate(goals)
     ]
     path = driver.plan(Program(tuple(moves), start=start))
-    assert not has_tangents(path)
     places = everywhere(path)
     found = configurations(path, places)
     # Samples of the path itself come back exactly.
     at = np.searchsorted(path.sigma, sigma_of(path, places)[0])
     assert found[0] == pytest.approx(path.q[at])
-    with pytest.raises(ValueError, match="joint moves"):
-        tangents(path, places, Directions(np.zeros((3, 6, 1)), np.zeros((1, 1))))

@@ -380,12 +380,12 @@ def test_configurations_change_as_differences_say_on_mixed_paths() -> None:
     ahead, behind = driver.drive(here.x + step * d), driver.drive(here.x - step * d)
     assert ahead is not None and behind is not None
     quotient = (ahead.q - behind.q) / (2 * step)
-    assert change.q @ d == pytest.approx(quotient, abs=2e-3 * float(np.abs(quotient).max()))
+    assert change.q @ d == pytest.approx(quotient, abs=5e-5 * float(np.abs(quotient).max()))
     rooms = [
         (b.left.value - a.left.value) / (2 * step)
         for a, b in zip(behind.rooms, ahead.rooms, strict=True)
     ]
-    assert change.rooms @ d == pytest.approx(np.array(rooms), abs=1e-3)
+    assert change.rooms @ d == pytest.approx(np.array(rooms), abs=1e-6)
 
 
 def test_what_cannot_be_driven_has_no_drive() -> None:
