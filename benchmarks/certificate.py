@@ -12,6 +12,10 @@ a hundredth of the path, in its middle.
 counts those that are proven although samples ten times as dense break the rules of parts,
 ``missed`` those that are not proven although they keep them by 1.5 mm, ``unlike`` those of which
 `flyby check` says something else than the proof.
+
+``parts-optimized``: what `flyby optimize` makes of these: ``refused`` collide as they are,
+``faster`` and ``moved`` count programs with better zones, or points, ``contradicted`` those among
+the results that break the rules of parts in such samples.
 """
 
 from __future__ import annotations
@@ -30,16 +34,20 @@ from flyby.core.collision.proof.certificate import (
     certify_stretch,
     scenes_of,
 )
+from flyby.core.errors import MotionError
 from flyby.core.handling.handling import handling_of
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.geometry.pieces import Sampling
 from flyby.core.program.zone import Radius
 from flyby.core.registry import find_vendor
+from flyby.problems.improve.waypoints import Effort, WaypointTask, optimize_waypoints
 from flyby.validation.scenes.clutter import clutter_100
 from flyby.validation.scenes.handling import random_handling, worst_fault
 from flyby.validation.scenes.scene import with_zone
 from flyby.validation.scenes.two_joints import two_joints
 
+OPTIMIZED = "parts-optimized"
+BRIEF = Effort(starts=2, generations=0, iterations=30, workers=1)
 CASES = {"two-joints": two_joints, "clutter-100": clutter_100}
 ZONE = 0.01
 RESOLUTION = 1e-5
@@ -50,6 +58,8 @@ CLEARLY = 1.5e-3
 
 def measure(case: str, programs: int) -> Iterator[Figure]:
     """The figures of a case."""
+    if case == OPTIMIZED:
+        return parts_optimized(programs)
     return parts(programs) if case == "parts" else costs(case)
 
 
@@ -81,6 +91,33 @@ def _against_samples(seed: int) -> Counter[str]:
     )
 
 
+def parts_optimized(programs: int) -> Iterator[Figure]:
+    """What `optimize` makes of such programs, and whether dense samples agree with its proofs."""
+    found: Counter[str] = Counter()
+    gained: list[float] = []
+    for seed in range(programs):
+        found["programs"] += 1
+        scene, clearance = random_handling(seed), (0.0, 0.003, 0.006)[seed % 3]
+        cell, program = replace(scene.cell, clearance=clearance), scene.program
+        controller = Controller(find_vendor(cell.vendor), cell.robot)
+        task = WaypointTask(handling=handling_of(program, cell))
+        try:
+            made = optimize_waypoints(controller, program, cell, task, BRIEF)
+        except MotionError:
+            found["refused"] += 1  # it collides as it is
+            continue
+        dense = Controller(find_vendor(cell.vendor), cell.robot, controller.model, DENSE)
+        again = handling_of(made.program, cell)
+        by = worst_fault(cell, again, dense.plan(made.program), clearance).by
+        found["faster"] += made.changed
+        found["moved"] += bool(made.moved)
+        found["contradicted"] += by > TOLERANCE + 1e-6
+        gained.append(1.0 - made.after.time / made.before.time)
+    for figure in ("programs", "refused", "faster", "moved", "contradicted"):
+        yield Figure(OPTIMIZED, figure, found[figure], "")
+    yield Figure(OPTIMIZED, "gained_percent", 100.0 * sum(gained) / max(len(gained), 1), "%")
+
+
 def costs(case: str) -> Iterator[Figure]:
     """What proofs of one scene cost."""
     scene = CASES[case]()
@@ -109,4 +146,4 @@ def costs(case: str) -> Iterator[Figure]:
 
 
 if __name__ == "__main__":
-    main(__doc__ or "", measure, (*CASES, "parts"), CASES, programs=300)
+    main(__doc__ or "", measure, (*CASES, "parts", OPTIMIZED), CASES, programs=300)

@@ -17,6 +17,7 @@ from .options.moves import NAMED, is_named, listed_names, moves_named, moves_to,
 from .setup import RobotOptions, Setup, like, start_of
 
 if TYPE_CHECKING:
+    from ..core.handling.handling import Handling
     from ..core.program.program import Program
     from ..core.vendor import Vendor
     from ..problems.improve.rounding import Rounding
@@ -80,6 +81,7 @@ def task_of(
     objective: float | str = "time",
     vias: str = "keep",
     predefined: bool = False,
+    handling: Handling | None = None,
 ) -> WaypointTask:
     """The task that options describe.
 
@@ -90,6 +92,7 @@ def task_of(
         objective: see `weight`.
         vias: ``keep`` or ``change``.
         predefined: whether zones are chosen among the vendor's own.
+        handling: of the cell's parts; None for a cell without.
 
     Raises:
         InputError: naming the option.
@@ -109,12 +112,20 @@ def task_of(
         axes=None if options.axes is None else joint_indices(options.axes, setup.robot.arm_size),
         tilt=options.tilt,
         clearance=options.clearance,
-        freed=freed_stops(program, options.free, {*held, *(i - 1 for i in held)}),
+        freed=freed_stops(
+            program, options.free, {*held, *(i - 1 for i in held)}, targets_of(handling)
+        ),
         pattern=pattern_for(setup.vendor.speaks),
         rounding=rounding_of(setup.vendor, predefined),
         vias=ViaCount(vias),
         start=start_of(program),
+        handling=handling,
     )
+
+
+def targets_of(handling: Handling | None) -> tuple[int, ...]:
+    """Indices of the moves at whose targets parts are taken or released; none without parts."""
+    return () if handling is None else handling.targets
 
 
 def idle_notes(program: Program, options: WaypointOptions, task: WaypointTask) -> list[Note]:
@@ -208,13 +219,19 @@ def joint_indices(given: str | Sequence[int], count: int) -> list[int]:
     return [int(word) - 1 for word in words]
 
 
-def freed_stops(program: Program, free: Sequence[int | str], kept: Collection[int]) -> list[int]:
+def freed_stops(
+    program: Program,
+    free: Sequence[int | str],
+    kept: Collection[int],
+    handled: Collection[int] = (),
+) -> list[int]:
     """Indices of the stops that may be passed.
 
     Args:
         program: the program.
         free: moves by number, line or target, or ``all``.
         kept: indices of the moves whose zones are to stay; ``all`` leaves them out.
+        handled: of those at whose targets parts are taken or released; likewise.
 
     Raises:
         InputError: naming the option.
@@ -222,10 +239,15 @@ def freed_stops(program: Program, free: Sequence[int | str], kept: Collection[in
     from ..problems.improve.zones.points import passable_stops
 
     if ALL in free:
-        return [i for i in passable_stops(program) if i not in kept]
+        return [i for i in passable_stops(program) if i not in {*kept, *handled}]
     freed: list[int] = []
     for text in free:
         for i in moves_named(program, text, "free"):
+            if i in handled:
+                raise OptionError(
+                    f"{spelt('free')} {text}: a part of the cell is taken or released there, so "
+                    "the robot stops"
+                )
             if i in kept:
                 raise OptionError(
                     f"{spelt('free')} {text}: {spelt('keep')} has this stop stay; give one of them"

@@ -11,6 +11,7 @@ from .changes import WaypointOptions, delivered, idle_notes, task_of, weight
 from .files.texts import ProgramTexts
 from .options.entries import COUNT, Extent, choice, number, switch, value
 from .options.keywords import by_keywords
+from .results.cell_course import CellCourse
 from .setup import CellOptions, controller_of, with_setup
 
 if TYPE_CHECKING:
@@ -94,6 +95,7 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
     cell = setup.surroundings(program, no_floor=options.no_floor)
     if options.vias == CHANGE:  # what cannot be written anew is refused before the search
         setup.vendor.write(program, setup.robot)
+    course = CellCourse.of(program, setup)
     task = task_of(
         program,
         setup,
@@ -101,6 +103,7 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
         objective=options.objective,
         vias=options.vias,
         predefined=options.predefined,
+        handling=course.handling,
     )
     texts = ProgramTexts(setup, program, own=options.own)
 
@@ -115,8 +118,12 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
         task = replace(task, freedom=Freedom.ZONES)
     controller = controller_of(program, setup)
     effort = effort_of(options.starts, options.generations, options.seed)
-    made = optimize_waypoints(controller, program, cell, task, effort, texts.read_back, report)
-    return delivered(made, texts, setup, idle_notes(program, options, task))
+
+    def read_back(changed: Program) -> Program:
+        return course.loaded(texts.read_back(course.unloaded(changed)))
+
+    found = optimize_waypoints(controller, course.program, cell, task, effort, read_back, report)
+    return delivered(course.given_back(found), texts, setup, idle_notes(program, options, task))
 
 
 def effort_of(starts: int | None, generations: int | None, seed: int) -> Effort:

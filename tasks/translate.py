@@ -124,7 +124,7 @@ def written(made: Translation) -> Sources:
     sources = setup.vendor.write(program, setup.robot, made.options)
 
     def around(again: Program, parts: Sequence[DrivenPart]) -> list[Finding]:
-        return clearance_findings(CellCourse(again, again), setup, parts)
+        return clearance_findings(CellCourse(again, again, setup), setup, parts)
 
     check_driven(made, sources, setup.vendor, setup.robot, around)
     return sources

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .changes import ChangeOptions, at_speeds, delivered, freed_stops, kept_moves, rounding_of
@@ -69,12 +69,12 @@ def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) 
     cell = setup.surroundings(program, no_floor=options.no_floor)
     course = CellCourse.of(program, setup)
     moves, speeds = kept_moves(program, options.keep)
-    kept = sorted({*moves, *at_speeds(program, speeds), *course.handled})
+    kept = {*moves, *at_speeds(program, speeds)}
     wanted = ZoneTask(
         clearance=options.clearance,
-        freed=freed_stops(program, options.free, kept),
+        freed=freed_stops(program, options.free, kept, course.handled),
         pattern=pattern_for(setup.vendor.speaks),
-        kept=kept,
+        kept=sorted({*kept, *course.handled}),
         apart=options.own,
         rounding=rounding_of(setup.vendor, options.predefined),
         start=start_of(program),
@@ -88,12 +88,8 @@ def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) 
         return course.loaded(texts.read_back(course.unloaded(changed)))
 
     found = maximize_zones(controller, course.program, cell, wanted, read_back, options.say)
-    made = replace(
-        found,
-        original=program,
-        program=course.unloaded(found.program) if found.changed else program,
-        notes=(*course.notes, *found.notes),
-    )
     able = {i for i, move in enumerate(program.moves) if not isinstance(move.zone, Fine)}
     able |= set(freed_stops(program, options.free, ())) if ALL in options.free else set()
-    return delivered(made, texts, setup, idle_kept(program, options.keep, able, path=False))
+    return delivered(
+        course.given_back(found), texts, setup, idle_kept(program, options.keep, able, path=False)
+    )

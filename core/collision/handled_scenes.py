@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..cell.cell import Cell
@@ -9,9 +11,29 @@ from ..handling.arrangement import Arrangement
 from ..handling.handling import Handling
 from ..motion.path.path import Path
 from ..program.tool import Tool
-from .proof.certificate import SceneOf
+from .proof.certificate import SceneOf, scenes_of
 from .scene.handled_pairs import RESTING, set_aside
 from .scene.scene import CollisionScene
+
+
+def scenes_along(
+    cell: Cell, handling: Handling | None, plan: Callable[[], Path], clearance: float
+) -> SceneOf:
+    """The scenes of a program's moves, with or without parts.
+
+    Args:
+        cell: what stands around.
+        handling: of the program; None for a cell without parts.
+        plan: gives the program's path, which is asked for where there are parts.
+        clearance: see `handled_scenes`.
+
+    Raises:
+        InputError: the cell has parts, and nobody says where they are.
+        MotionError: the program cannot be driven.
+    """
+    if handling is None:
+        return scenes_of(cell)
+    return handled_scenes(cell, handling, plan(), clearance)
 
 
 def handled_scenes(cell: Cell, handling: Handling, path: Path, clearance: float = 0.0) -> SceneOf:

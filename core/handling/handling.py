@@ -40,6 +40,11 @@ class Handling:
     behind: tuple[frozenset[str], ...]
     notes: tuple[Note, ...]
 
+    @property
+    def targets(self) -> tuple[int, ...]:
+        """Indices of the moves at whose targets parts are taken or released."""
+        return tuple(i for i, names in enumerate(self.behind) if names)
+
     def held(self, move: int) -> Arrangement:
         """What the flange carries along a move."""
         return tuple(placed for placed in self.arrangements[move] if placed.held)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from ..setup import Setup, start_of
 
@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from ...core.errors import Note
     from ...core.handling.handling import Handling
     from ...core.program.program import Program
+    from ...core.program.tool import Load
+    from ...problems.improve.solution import Solution
+
+Made = TypeVar("Made", bound="Solution")
 
 
 @dataclass(frozen=True)
@@ -23,12 +27,14 @@ class CellCourse:
     Args:
         program: its moves carry the parts that are held.
         given: as it was read.
+        setup: its robot and cell.
         handling: of the cell's parts; None for no cell, or one without parts.
         notes: what there is to say of the parts.
     """
 
     program: Program
     given: Program
+    setup: Setup
     handling: Handling | None = None
     notes: tuple[Note, ...] = ()
 
@@ -40,28 +46,45 @@ class CellCourse:
             InputError: a statement both takes a part and lets go of it, or a mesh cannot be used.
         """
         if setup.cell is None or not setup.cell.parts:
-            return cls(program, program)
+            return cls(program, program, setup)
         from ...core.handling.handling import handling_of
         from ...core.handling.loads import with_loads
 
         handling = handling_of(program, setup.cell, start_of(program))
         loaded, notes = with_loads(program, handling)
-        return cls(loaded, program, handling, (*handling.notes, *notes))
+        return cls(loaded, program, setup, handling, (*handling.notes, *notes))
 
     @property
     def handled(self) -> tuple[int, ...]:
         """Indices of the moves at whose targets parts are taken or released."""
-        if self.handling is None:
-            return ()
-        return tuple(i for i, names in enumerate(self.handling.behind) if names)
+        return () if self.handling is None else self.handling.targets
 
     def loaded(self, program: Program) -> Program:
-        """The same moves, zones and speeds changed, with the parts that they carry."""
-        return _with_loads_of(program, self.program)
+        """The program, changed, with the parts that it carries."""
+        if self.handling is None:
+            return program
+        if len(program.moves) != len(self.given.moves):
+            return CellCourse.of(program, self.setup).program
+        return _with_loads(program, [move.load for move in self.program.moves])
 
     def unloaded(self, program: Program) -> Program:
         """What `loaded` has made, without the parts."""
-        return _with_loads_of(program, self.given)
+        if self.handling is None:
+            return program
+        pairs = list(zip(self.program.moves, self.given.moves, strict=True))
+        if len(program.moves) == len(pairs):
+            return _with_loads(program, [given.load for _, given in pairs])
+        # Moves come and go, but none with a load of its own.
+        known = {(loaded.tool, loaded.load): given.load for loaded, given in pairs}
+        return _with_loads(
+            program, [known.get((move.tool, move.load), move.load) for move in program.moves]
+        )
+
+    def given_back(self, found: Made) -> Made:
+        """What an improvement of the loaded program found, without the parts."""
+        program = self.unloaded(found.program) if found.changed else self.given
+        notes = (*self.notes, *found.notes)
+        return replace(found, original=self.given, program=program, notes=notes)
 
     def clearances(
         self, setup: Setup, parts: Sequence[DrivenPart]
@@ -80,8 +103,6 @@ class CellCourse:
         return tuple(found), tuple(meter.notes)
 
 
-def _with_loads_of(program: Program, other: Program) -> Program:
-    if program is other or len(program.moves) != len(other.moves):
-        return program
-    pairs = zip(program.moves, other.moves, strict=True)
-    return program.with_moves(tuple(replace(move, load=like.load) for move, like in pairs))
+def _with_loads(program: Program, loads: Sequence[Load | None]) -> Program:
+    moves = zip(program.moves, loads, strict=True)
+    return program.with_moves(tuple(replace(move, load=load) for move, load in moves))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from flyby.core.errors import InputError
 from flyby.core.lint.check import CLEARANCE, COLLISION, NEAREST, PART
 from flyby.core.lint.finding import Finding
 from flyby.core.program.zone import Fine
+from flyby.tasks.results.cell_course import CellCourse
+from flyby.tasks.setup import setup_of_program
 
 ROOT = Path(__file__).parents[2]
 PICK = ROOT / "examples" / "pick.script"
@@ -107,9 +110,40 @@ def test_a_program_without_a_cell_has_no_clearance() -> None:
     assert run.clearances == ()
 
 
-def test_what_moves_points_refuses_cells_with_parts(cell) -> None:
-    with pytest.raises(InputError, match=r"parts that are picked and placed.*zones"):
-        flyby.optimize(flyby.read(PICK, cell=cell()))
+def test_what_plans_motions_refuses_cells_with_parts(cell) -> None:
+    with pytest.raises(InputError, match=r"parts that are picked and placed.*optimize"):
+        flyby.pareto(flyby.read(PICK, cell=cell()))
+
+
+def test_stops_at_parts_are_not_freed(cell) -> None:
+    for task in (flyby.zones, flyby.optimize):
+        with pytest.raises(InputError, match="a part of the cell is taken or released there"):
+            task(flyby.read(PICK, cell=cell()), free=[3])
+
+
+def test_a_program_that_carries_parts_becomes_faster(cell, tmp_path: Path) -> None:
+    """Zones alone. What bottles weigh stands nowhere in it."""
+    once = tmp_path / "once.script"
+    once.write_text(PICK.read_text("utf-8").replace("part < 2", "part < 1"), "utf-8")
+    program = flyby.read(once, cell=cell())
+    made = flyby.optimize(program, zones_only=True, starts=1, generations=0)
+    assert made.proven and made.after.time < 0.95 * made.before.time
+    assert made.certificate is not None and "what takes it" in made.certificate.message
+    assert [move.load for move in made.program.moves] == [move.load for move in program.moves]
+    assert "set_target_payload(0.8" in next(iter(made.texts.values())).text
+
+
+def test_moves_that_come_and_go_leave_loads_as_they_were(cell) -> None:
+    program = flyby.read(PICK, cell=cell())
+    course = CellCourse.of(program, setup_of_program(program))
+    assert course.unloaded(course.program) == program and course.loaded(program) == course.program
+    statements = list(course.program.statements)
+    carried = next(k for k, s in enumerate(statements) if getattr(s, "load", None) is not None)
+    more = replace(course.program, statements=(*statements, statements[carried]))
+    assert all(move.load is None for move in course.unloaded(more).moves)
+    again = course.loaded(course.unloaded(more))
+    assert len(again.moves) == len(program.moves) + 1
+    assert again.moves[3].load is not None
 
 
 def test_zones_grow_as_far_as_what_is_carried_lets_them(cell) -> None:

@@ -269,7 +269,7 @@ def _least(
     clearance: float,
 ) -> FloatArray:
     """What a pair has to keep at each of M samples, m."""
-    least = np.full(len(distance), clearance)
+    least = np.full(len(distance), float(clearance))
     first, second = (scene.bodies[k] for k in scene.pairs[row])
     for end, names in ((0, handling.before[move]), (-1, handling.behind[move])):
         floor = _floor(first, second, names, float(distance[end]), clearance)

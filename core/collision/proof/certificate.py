@@ -61,6 +61,16 @@ def scenes_of(cell: Cell) -> SceneOf:
     return scene
 
 
+def renumbered(scenes: SceneOf, moves: Sequence[int]) -> SceneOf:
+    """The scenes of a program whose moves have other indices.
+
+    Args:
+        scenes: of the one that they come from.
+        moves: index of each move in that one.
+    """
+    return lambda tool, move=0, /: scenes(tool, moves[move])
+
+
 def certify(
     controller: Controller,
     run: Run,

@@ -329,6 +329,21 @@ class CollisionScene:
         )
         return np.asarray(gradients)
 
+    def shifts(self, q: ArrayLike, start: ArrayLike) -> FloatArray:
+        """How far the bodies of each pair are shifted against each other, (M, P) m.
+
+        Args:
+            q: (M, N) rad or m.
+            start: (N,), from where they are there.
+        """
+        rows = self._rows(np.concatenate([np.asarray(start)[None], self._rows(q)]))
+        R, p = self._place(rows)
+        shifted = np.zeros((len(rows) - 1, len(self.pairs)))
+        for one, other in (self.pairs.T, self.pairs.T[::-1]):
+            seen = np.einsum("mpji,mpj->mpi", R[:, one], p[:, other] - p[:, one])
+            shifted = np.maximum(shifted, np.linalg.norm(seen[1:] - seen[0], axis=2))
+        return shifted
+
     def collides(self, q: ArrayLike) -> NDArray[np.bool_]:
         """Whether anything touches, (...,) bool for q (..., N)."""
         values = np.asarray(q, dtype=float)

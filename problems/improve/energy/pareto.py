@@ -26,8 +26,7 @@ from ...reading_back import ReadBack
 from ..progress import Progress, Report
 from ..solve_round_verify import ProgramFeasibility
 from ..waypoints import Effort, optimize_waypoints
-from ..waypoints.changeable import select
-from ..waypoints.freed_stops import with_freed_stops
+from ..waypoints.changeable import select, with_freed_stops
 from ..waypoints.options import Freedom
 from ..waypoints.options import WaypointTask as Wishes
 from ..waypoints.variables import ProgramVariables, make_variables

@@ -7,6 +7,7 @@ joints stay within their limits at those places (rad or m); and the user's limit
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,6 @@ import numpy as np
 from ....core.arrays import FloatArray, IntArray
 from ....core.collision.distance.answers import Distances
 from ....core.collision.proof.certificate import SceneOf
-from ....core.collision.scene.scene import CollisionScene
 from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.gradients.derivatives import Derivatives
@@ -23,6 +23,7 @@ from .block_emulation import DrivenBlock, Driver
 from .blocks import MoveBlock
 from .options import WaypointTask
 from .point_limit_rows import PointRow, point_rows
+from .watched import watch
 
 _WITHIN = 0.3
 """m beyond which distances are of no concern to a step."""
@@ -31,23 +32,6 @@ _COSTLY_WITHIN = 0.04
 from further away is corrected by the true value there."""
 _FASTEST = 4.0
 """m by which a robot's body moves at most, about, where the variables change by a length of 1."""
-
-
-@dataclass(frozen=True)
-class WatchedPlaces:
-    """Places that one scene looks at.
-
-    Args:
-        scene: the cell with the tool mounted there.
-        places: (k,) indices of places.
-        first: index of its first constraint; they run over places, then pairs.
-        wanted: (P,) m, distance that each pair is to keep.
-    """
-
-    scene: CollisionScene
-    places: IntArray
-    first: int
-    wanted: FloatArray
 
 
 @dataclass(frozen=True)
@@ -75,7 +59,7 @@ class BlockProblem:
     Args:
         controller: that drives it.
         block: the block.
-        scenes: the cell with each tool.
+        scenes: of the block's moves.
         task: the user's wishes.
         clearance: m to aim at.
         least: m that is required; pairs that are nearer than aimed at where the robot stops
@@ -107,7 +91,7 @@ class BlockProblem:
         if first is None:
             raise MotionError("the program cannot be driven as it is", block.first)
         self._time, self._energy = self._costs(first)
-        self._watched = _watch(first, self._driver, scenes, clearance, least)
+        self._watched = watch(first, self._driver, scenes, clearance, least)
         self._points: tuple[PointRow, ...] = point_rows(block, first.path, task)
         limits = controller.robot.limits
         self._joint_limits = limits.lower, limits.upper
@@ -126,8 +110,8 @@ class BlockProblem:
         found = tuple(
             watched.scene.distances(
                 drive.q[watched.places],
-                float(watched.wanted.max()) + _WITHIN,
-                float(watched.wanted.max()) + _COSTLY_WITHIN,
+                watched.most + _WITHIN,
+                watched.most + _COSTLY_WITHIN,
             )
             for watched in self._watched
         )
@@ -141,7 +125,9 @@ class BlockProblem:
 
     def _constraints(self, drive: DrivenBlock, found: tuple[Distances, ...]) -> FloatArray:
         parts = [
-            (distances.distance - watched.wanted).ravel()
+            (
+                distances.distance - watched.wanted(drive.q[watched.places], distances.distance)
+            ).ravel()
             for watched, distances in zip(self._watched, found, strict=True)
         ]
         parts.append(np.array([room.left.value for room in drive.rooms]))
@@ -186,7 +172,7 @@ class BlockProblem:
         """∂c/∂x of some constraints (len(rows), n)."""
         drive = point.drive
         extreme = np.concatenate([drive.q.argmin(axis=0), drive.q.argmax(axis=0)])
-        entries = [self._entries(k, rows) for k in range(len(self._watched))]
+        entries = list(self._entries(rows))
         wanted = [self._watched[k].places[sample] for k, (_, sample, _) in enumerate(entries)]
         which, back = np.unique(np.concatenate([*wanted, extreme]), return_inverse=True)
         change = self._driver.change(drive, which)
@@ -201,13 +187,19 @@ class BlockProblem:
         self._rest(point, rows, change.q[back[done:]], change.rooms, change.waypoints, out)
         return out
 
-    def _entries(self, k: int, rows: IntArray) -> tuple[IntArray, IntArray, IntArray]:
-        """Places in ``rows`` of the distances of scene k, and their samples and pairs."""
-        watched = self._watched[k]
-        size = len(watched.places) * len(watched.wanted)
-        at = np.flatnonzero((rows >= watched.first) & (rows < watched.first + size))
-        sample, pair = np.divmod(rows[at] - watched.first, max(len(watched.wanted), 1))
-        return at, sample, pair
+    def _entries(self, rows: IntArray) -> Iterator[tuple[IntArray, IntArray, IntArray]]:
+        """Places in ``rows`` of each scene's distances, and their samples and pairs.
+
+        Constraints run over scenes, then places, then pairs.
+        """
+        first = 0
+        for watched in self._watched:
+            pairs = len(watched.scene.pairs)
+            size = len(watched.places) * pairs
+            at = np.flatnonzero((rows >= first) & (rows < first + size))
+            sample, pair = np.divmod(rows[at] - first, max(pairs, 1))
+            yield at, sample, pair
+            first += size
 
     def _rest(
         self,
@@ -228,29 +220,3 @@ class BlockProblem:
         first = len(point.constraints) - len(table)
         at = np.flatnonzero(rows >= first)
         out[at] = table[rows[at] - first]
-
-
-def _watch(
-    first: DrivenBlock,
-    driver: Driver,
-    scenes: SceneOf,
-    clearance: float,
-    least: float,
-) -> tuple[WatchedPlaces, ...]:
-    """Which scene looks at which places: by the tool of the move, in a zone of the one before."""
-    count = len(first.path.segments.scale)
-    part = driver.places.part
-    segment = np.where(part >= count, part - count, part)
-    tools = [driver.program.moves[i].tool for i in first.path.route.moves]
-    watched: list[WatchedPlaces] = []
-    begin = 0
-    for tool in dict.fromkeys(tools):
-        scene = scenes(tool)
-        owns = np.array([other == tool for other in tools])[segment]
-        places = np.flatnonzero(owns)
-        stops = first.path.segments.ends.q[[0, -1], [0, 1]]
-        ends = scene.distances(stops, clearance).distance.min(axis=0, initial=clearance)
-        wanted = np.clip(ends, least, clearance)
-        watched.append(WatchedPlaces(scene, places, begin, wanted))
-        begin += len(places) * len(wanted)
-    return tuple(watched)

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from ....core.arrays import FloatArray
-from ....core.collision.proof.certificate import SceneOf
+from ....core.collision.proof.certificate import SceneOf, renumbered
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
@@ -37,7 +37,8 @@ class Shared:
     """What all searches share.
 
     Args:
-        controller, scenes, task, effort: see `optimize`.
+        controller, task, effort: see `optimize`.
+        scenes: of the whole program's moves.
         clearance: m to keep.
         blocks: the problems.
     """
@@ -56,11 +57,19 @@ class Shared:
         other.sampling = self.effort.sampling
         return other
 
-    @property
-    def feasibility(self) -> ProgramFeasibility:
+    def scenes_of(self, block: int) -> SceneOf:
+        """The scenes of one block's moves."""
+        chosen = self.blocks[block]
+        return renumbered(self.scenes, range(chosen.first, chosen.last + 1))
+
+    def feasibility(self, block: int) -> ProgramFeasibility:
         """What a block alone has to stand."""
         return ProgramFeasibility(
-            self.controller, self.scenes, self.clearance, self.task.residual, resolution=None
+            self.controller,
+            self.scenes_of(block),
+            self.clearance,
+            self.task.residual,
+            resolution=None,
         )
 
 
@@ -132,7 +141,7 @@ def work(shared: Shared, job: Job) -> Answer:
     if shared.task.rounding.predefined:
         shared, job = _with_chosen_zones(shared, job)
     refined = _Refined(shared, job, Aim(margin, FINE), shared.effort.proofs + 1)
-    solve_round_verify(shared.feasibility, refined)
+    solve_round_verify(shared.feasibility(job.block), refined)
     assert refined.answer is not None, "there is one attempt at least"
     return refined.answer
 
@@ -146,7 +155,7 @@ def _searched(
         problem = BlockProblem(
             controller,
             shared.blocks[job.block],
-            shared.scenes,
+            shared.scenes_of(job.block),
             shared.task,
             shared.clearance + aim.margin,
             shared.clearance,

@@ -1,16 +1,24 @@
 """Which of a program's points and zones may change, and why the others stay.
 
 Tasks stay where they are: stop points, and the ends of moves whose path the process fixes. What
-moves is via points: waypoints of `MoveJ` and `MoveL` that the robot passes.
+moves is via points: waypoints of `MoveJ` and `MoveL` that the robot passes. Stops that may be
+passed get small zones to begin with, and are such points then.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Hashable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ....core.errors import InputError, UnknownNameError
+import numpy as np
+
+from ....core.collision.proof.certificate import SceneOf
+from ....core.collision.scene.bodies import BodyKind
+from ....core.collision.scene.handled_pairs import RESTING
+from ....core.collision.scene.scene import TouchingPairs
+from ....core.errors import InputError, MotionError, Note, UnknownNameError
+from ....core.motion.emulator.controller import Controller
 from ....core.motion.path.path import Path
 from ....core.program.move import Move, MoveC
 from ....core.program.origin import Origin, Ownership
@@ -18,9 +26,13 @@ from ....core.program.program import Program
 from ....core.program.target import JointTarget
 from ....core.program.zone import ContourFraction, Fine, Radius, VendorZone
 from ....core.robot.model import Robot
+from ..zones.points import passable_stops
 from .options import Freedom, WaypointTask
 from .oriented import stays_oriented
-from .point_limits import Fixed
+from .point_limits import Fixed, PointLimit
+
+_RADII = (0.01, 0.003, 0.001)
+"""m that freed stops begin with: the first with which every waypoint is still driven."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +75,7 @@ def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Se
     why_zone: dict[int, str] = {}
     why_point: dict[int, str] = {}
     for i in passed:
-        reason = _why_untouched(i, after[i], process)
+        reason = task.settled.get(task.given_move(i)) or _why_untouched(i, after[i], process)
         if reason is None and not _sizable(moves[i]):
             why_zone[i] = "its zone has no radius to change"
         elif reason is not None:
@@ -78,6 +90,46 @@ def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Se
     if task.freedom is not Freedom.ZONES:
         reasons |= {i: why for i, why in why_point.items() if not any(i in g for g in points)}
     return Selection(points, zones, dict(sorted(reasons.items())), passed)
+
+
+def beside_parts(task: WaypointTask, program: Program, path: Path, scenes: SceneOf) -> WaypointTask:
+    """The task with what has to stay where parts are taken and released.
+
+    Args:
+        task: of the program as it was given, with its `handling`.
+        program: that one.
+        path: of it.
+        scenes: of its moves.
+    """
+    assert task.handling is not None
+    moves, driven = program.moves, path.route.moves
+    settled = dict.fromkeys(task.handling.targets, "a part is taken or released there")
+    limits: dict[int, PointLimit] = {}
+    ways: set[int] = set()
+    for k, i in enumerate(driven):
+        touching = scenes(moves[i].tool, i).left_out
+        if touching is None:
+            continue
+        ways.add(i)
+        leaving, coming = (_depth(touching, end) for end in (0, 1))
+        if leaving > RESTING:
+            limits[i] = Fixed(_SUNK.format(1e3 * leaving, "releases", "out of"))
+        if coming > RESTING and k:
+            limits[driven[k - 1]] = Fixed(_SUNK.format(1e3 * coming, "takes", "into"))
+    return replace(task, settled=settled, ways=ways, limits=limits | dict(task.limits))
+
+
+_SUNK = "the tool's shape is {:.1f} mm in the part that it {} there, so no other way {} it is known"
+
+
+def _depth(touching: TouchingPairs, end: int) -> float:
+    """m by which a tool is in a part at an end of a move, at most."""
+    scene, deepest = touching.scene, 0.0
+    for pair, floor in zip(scene.pairs, touching.floor[:, end], strict=True):
+        kinds = {scene.bodies[k].kind for k in pair}
+        if kinds == {BodyKind.TOOL, BodyKind.PART} and np.isfinite(floor):
+            deepest = max(deepest, -float(floor) - RESTING)
+    return deepest
 
 
 def _process_moves(program: Program, task: WaypointTask) -> dict[int, str]:
@@ -122,8 +174,9 @@ def _sizable(move: Move) -> bool:
 def _why_fixed(moves: Sequence[Move], i: int, after: int, task: WaypointTask) -> str | None:
     if task.freedom is Freedom.ZONES:
         return "only zones are to change"
-    if isinstance(task.limits.get(i, task.limit), Fixed):
-        return "it is to stay"
+    limit = task.limits.get(i, task.limit)
+    if isinstance(limit, Fixed):
+        return limit.why
     if isinstance(moves[i], MoveC) or isinstance(moves[after], MoveC):
         return "an arc begins or ends there"
     return None
@@ -206,3 +259,54 @@ def _why_group_stays(
         if j in reasons:
             return f"move {j + 1} has the same {part}: {reasons[j]}"
     return None
+
+
+def with_freed_stops(
+    controller: Controller, program: Program, task: WaypointTask, notes: list[Note]
+) -> Program:
+    """The program with small zones at stops that may be passed.
+
+    Args:
+        controller: drives it.
+        program: the program.
+        task: names the stops.
+        notes: stops at which no zone can be driven are listed here, and stay.
+
+    Raises:
+        InputError: a move is named that is no stop, or one for a reason.
+    """
+    passable, moves = passable_stops(program), program.moves
+    for i in task.freed:
+        if not 0 <= i < len(moves) or i not in passable:
+            raise InputError(
+                f"move {i + 1} cannot be passed: it is no stop, or one for a reason (the "
+                "last move, a wait, something that is switched there)"
+            )
+    for radius in _RADII:
+        freed = _freed(program, task.freed, radius, task)
+        if _driven(controller, program, freed, task):
+            return freed
+    made = program
+    for i in task.freed:
+        freed = _freed(made, [i], _RADII[-1], task)
+        if _driven(controller, program, freed, task):
+            made = freed
+        else:
+            notes.append(Note("stays a stop: its neighbours leave it no room for a zone", i))
+    return made
+
+
+def _freed(program: Program, stops: Collection[int], radius: float, task: WaypointTask) -> Program:
+    moves = list(program.moves)
+    for i in stops:
+        moves[i] = replace(moves[i], zone=task.pattern.resized(radius))
+    return program.with_moves(tuple(moves))
+
+
+def _driven(controller: Controller, given: Program, freed: Program, task: WaypointTask) -> bool:
+    """Whether the same waypoints are driven."""
+    try:
+        route = controller.plan(freed, task.start).route
+    except MotionError:
+        return False
+    return route.moves == controller.plan(given, task.start).route.moves

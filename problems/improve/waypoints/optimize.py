@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 from ....core.cell.cell import Cell
-from ....core.collision.proof.certificate import SceneOf, scenes_of
+from ....core.collision.handled_scenes import scenes_along
+from ....core.collision.proof.certificate import SceneOf, renumbered
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError, MotionError, Note
 from ....core.motion.emulator.controller import Controller
@@ -26,8 +26,7 @@ from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .block_emulation import drivable
 from .block_search import Answer, Shared
 from .blocks import MoveBlock, cut
-from .changeable import Selection, select
-from .freed_stops import with_freed_stops
+from .changeable import Selection, beside_parts, select, with_freed_stops
 from .multistart import improve
 from .options import Effort, Freedom, ViaCount, WaypointTask
 from .taken_back import without_idle_changes
@@ -82,6 +81,7 @@ class _Optimization:
     Attributes:
         ended: whether the user has ended it.
         given: s, and energy where it counts, of the program as it was given.
+        scenes: of the program as it was given.
     """
 
     controller: Controller
@@ -91,12 +91,21 @@ class _Optimization:
     report: Report | None
     ended: bool = field(default=False, init=False)
     given: tuple[float, float] = field(default=(1.0, 1.0), init=False)
+    scenes: SceneOf = field(init=False)
 
     def solution(self, program: Program, read_back: ReadBack) -> Solution:
         """All of it."""
-        given, proof = self._feasibility.given(program)
+        self.scenes = scenes_along(
+            self.cell,
+            self.task.handling,
+            lambda: self.controller.plan(program, self.task.start),
+            self._clearance + self.task.residual,
+        )
+        given, proof = self._feasibility(self.task).given(program)
         self.given = self._costs(given)
-        notes = list(scene_notes(self._scenes, program))
+        notes = list(scene_notes(self.scenes, program))
+        if self.task.handling is not None:
+            self.task = beside_parts(self.task, program, given.path, self.scenes)
         base = with_freed_stops(self.controller, program, self.task, notes)
         zones = self._zones_alone(program, base, read_back)
         found = self._improved(base, self.task, self.effort, notes)
@@ -161,17 +170,15 @@ class _Optimization:
         wanted = self.task.clearance
         return self.cell.clearance if wanted is None else wanted
 
-    @cached_property
-    def _scenes(self) -> SceneOf:
-        return scenes_of(self.cell)
+    def _scenes(self, task: WaypointTask) -> SceneOf:
+        """Of a task's program."""
+        return self.scenes if task.given is None else renumbered(self.scenes, task.given)
 
-    @property
-    def _feasibility(self) -> ProgramFeasibility:
-        """What the whole program has to stand."""
-        task = self.task
+    def _feasibility(self, task: WaypointTask) -> ProgramFeasibility:
+        """What a task's whole program has to stand."""
         return ProgramFeasibility(
             self.controller,
-            self._scenes,
+            self._scenes(task),
             self._clearance,
             task.residual,
             task.start,
@@ -196,12 +203,12 @@ class _Optimization:
         if not blocks:
             return None
         alone = replace(task, beside=None)
-        shared = Shared(self.controller, self._scenes, alone, effort, self._clearance, blocks)
+        shared = Shared(self.controller, self._scenes(task), alone, effort, self._clearance, blocks)
         best, ended = improve(shared, self.report)
         self.ended = self.ended or ended
         chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in best]
         whole = _Whole(program, task.rounding, blocks, chosen, notes)
-        held = solve_round_verify(self._feasibility, whole)
+        held = solve_round_verify(self._feasibility(task), whole)
         return None if held is None else self._judged(*held, task)
 
     def _bare(self, given: Run, found: Counted) -> Counted:
@@ -211,7 +218,7 @@ class _Optimization:
             if self.ended:
                 return None
             try:
-                return self._judged(*self._feasibility.verified(program), found.task)
+                return self._judged(*self._feasibility(found.task).verified(program), found.task)
             except KeyboardInterrupt:
                 self.ended = True
             return None
@@ -232,7 +239,7 @@ class _Optimization:
             notes.append(Note(f"given up, as the new program cannot be written: {error}"))
             return None
         notes += written.notes
-        run, proof = self._feasibility.verified(written.program)
+        run, proof = self._feasibility(found.task).verified(written.program)
         kept = self._judged(run, proof, found.task)
         if kept is None:
             why = "it cannot be driven" if proof is None else proof.message
@@ -256,7 +263,7 @@ class _Optimization:
             try:
                 found = self._improved(program, task, effort, [])
                 # Nothing is left to change, or to better.
-                return found or self._judged(*self._feasibility.verified(program), task)
+                return found or self._judged(*self._feasibility(task).verified(program), task)
             except KeyboardInterrupt:
                 # Between searches, too: what is proven already stays.
                 self.ended = True
@@ -274,8 +281,8 @@ class _Optimization:
     def _idle(self, found: Counted) -> list[Note]:
         """An offer to leave out via points that serve nothing."""
 
-        def judged(program: Program) -> float | None:
-            kept = self._judged(*self._feasibility.verified(program), found.task)
+        def judged(program: Program, task: WaypointTask) -> float | None:
+            kept = self._judged(*self._feasibility(task).verified(program), task)
             return None if kept is None else kept.cost
 
         run, robot = found.run, self.controller.robot

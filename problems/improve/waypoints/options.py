@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from ....core.errors import InputError
+from ....core.handling.handling import Handling
 from ....core.motion.geometry.pieces import Sampling
 from ....core.program.target import JointTarget
 from ....core.program.zone import Radius, VendorZone
@@ -67,6 +68,12 @@ class WaypointTask:
         start: where the robot stands; None for the program's own start.
         freedom: what may change.
         beside: what other robots say of a program; None where there are none.
+        handling: of the cell's parts, by the program as it was given; None for a cell without.
+        settled: why points and zones stay at the ends of some moves of that program.
+        ways: indices of its moves along which what touches comes apart or together: neither end
+            goes.
+        given: for each move, the index of the one of the program as it was given that it comes
+            from; None where these are its own moves.
 
     Raises:
         InputError: a number out of its range.
@@ -88,6 +95,10 @@ class WaypointTask:
     start: JointTarget | None = None
     freedom: Freedom = Freedom.WAYPOINTS_AND_ZONES
     beside: Beside | None = None
+    handling: Handling | None = None
+    settled: Mapping[int, str] = field(default_factory=dict)
+    ways: Collection[int] = ()
+    given: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.time_weight <= 1.0:
@@ -100,6 +111,10 @@ class WaypointTask:
             value = getattr(self, name)
             if value is not None and not 0.0 <= value < math.inf:
                 raise InputError(f"WaypointTask.{name} is zero or more metres, not {value}")
+
+    def given_move(self, move: int) -> int:
+        """The index of a move in the program as it was given."""
+        return move if self.given is None else self.given[move]
 
     def free_axes(self, robot: Robot) -> list[int]:
         """Joints of an arm that joint targets may change."""
@@ -129,18 +144,27 @@ class WaypointTask:
             tilt=self.tilt if self.tilt >= math.pi else 0.0,
         )
 
-    def renumbered(self, new: Callable[[int], int | None]) -> WaypointTask:
+    def renumbered(self, new: Callable[[int], int | None], count: int) -> WaypointTask:
         """The same of a program whose moves have other indices.
 
         Args:
-            new: old index → new one; None for a move that is gone.
+            new: old index → new one; None for a move that is gone, one at the most.
+            count: of its moves. One that is new comes before the one that it was made of.
         """
         limits = {new(i): limit for i, limit in self.limits.items()}
+        given: dict[int, int] = {}
+        for old in range(count + 1) if self.given is None else range(len(self.given)):
+            k = new(old)
+            if k is not None and k < count:
+                given[k] = self.given_move(old)
+        for k in reversed(range(count)):
+            given.setdefault(k, given.get(k + 1, k))
         return replace(
             self,
             keep=[k for i in self.keep if (k := new(i)) is not None],
             freed=[k for i in self.freed if (k := new(i)) is not None],
             limits={i: limit for i, limit in limits.items() if i is not None},
+            given=tuple(given[k] for k in range(count)),
         )
 
 

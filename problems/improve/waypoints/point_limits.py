@@ -11,7 +11,13 @@ from ....core.spatial.pose import Vector3
 
 @dataclass(frozen=True, slots=True)
 class Fixed:
-    """It stays; its zone may change."""
+    """It stays; its zone may change.
+
+    Args:
+        why: for messages.
+    """
+
+    why: str = "it is to stay"
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -55,17 +56,20 @@ Renumbering = Callable[[int], int | None]
 
 
 def idle_points(
-    best: Counted, selection: Selection, judged: Callable[[Program], float | None]
+    best: Counted,
+    selection: Selection,
+    judged: Callable[[Program, WaypointTask], float | None],
 ) -> Iterator[int]:
     """Via points (indices of moves) without which, all else as it is, nothing is lost.
 
     Args:
         best: the program.
         selection: what may change in it.
-        judged: a program's cost; None if it does not keep its clearance.
+        judged: a program's cost, with its task; None if it does not keep its clearance.
     """
-    for i in _countable(best, selection):
-        cost = judged(without(best.run.program, i))
+    for i in _dispensable(best, selection):
+        fewer = without(best.run.program, i)
+        cost = judged(fewer, best.task.renumbered(_gone(i), len(fewer.moves)))
         if cost is not None and cost <= best.cost * (1.0 + 1e-9):
             yield i
 
@@ -120,7 +124,7 @@ class _Turn:
 
     def _without_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 + _SERVES_NOTHING * self._share(best))
-        for i in self._here(best, _countable(best, self.selected(best))):
+        for i in self._here(best, _dispensable(best, self.selected(best))):
             found = self._search(best, without(best.run.program, i), _gone(i), self._brief)
             if found is not None and found.cost <= most:
                 return found
@@ -156,8 +160,9 @@ class _Turn:
             new: indices of its moves.
             effort: of the search.
         """
-        found = self.improved(program, self._confined(best).renumbered(new), effort)
-        return None if found is None else replace(found, task=best.task.renumbered(new))
+        count = len(program.moves)
+        found = self.improved(program, self._confined(best).renumbered(new, count), effort)
+        return None if found is None else replace(found, task=best.task.renumbered(new, count))
 
     def _confined(self, best: Counted) -> WaypointTask:
         """The task of a search that leaves all other stretches alone."""
@@ -194,6 +199,17 @@ def _countable(best: Counted, selection: Selection) -> list[int]:
     busy = _busy(best.run.program)
     alone = [group[0] for group in selection.points if len(group) == 1]
     return [i for i in alone if i not in busy]
+
+
+def _dispensable(best: Counted, selection: Selection) -> list[int]:
+    """Those of them at which no way begins or ends on which a part comes off what it touches."""
+    task, moves = best.task, best.run.path.route.moves
+    after = dict(pairwise(moves))
+    return [
+        i
+        for i in _countable(best, selection)
+        if not any(task.given_move(k) in task.ways for k in (i, after.get(i, i)))
+    ]
 
 
 def _busy(program: Program) -> set[int]:

@@ -50,6 +50,7 @@ def zones_alone(
         rounding=task.rounding,
         start=task.start,
         beside=task.beside,
+        handling=task.handling,
     )
     try:
         made = maximize_zones(controller, program, cell, wanted, read_back)

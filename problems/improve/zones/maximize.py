@@ -14,8 +14,8 @@ import numpy as np
 
 from ....core.arrays import FloatArray
 from ....core.cell.cell import Cell
-from ....core.collision.handled_scenes import handled_scenes
-from ....core.collision.proof.certificate import SceneOf, scenes_of
+from ....core.collision.handled_scenes import scenes_along
+from ....core.collision.proof.certificate import SceneOf
 from ....core.collision.proof.verdict import Certificate
 from ....core.errors import FlybyError, MotionError, Note
 from ....core.motion.emulator.controller import Controller
@@ -100,12 +100,12 @@ class _Maximization:
         self._options = options
         self._tell = tell
         self._wanted = cell.clearance if options.clearance is None else options.clearance
-        self._scenes: SceneOf = scenes_of(cell)
-        if options.handling is not None:
-            path = controller.plan(program, options.start)
-            self._scenes = handled_scenes(
-                cell, options.handling, path, self._wanted + options.residual
-            )
+        self._scenes: SceneOf = scenes_along(
+            cell,
+            options.handling,
+            lambda: controller.plan(program, options.start),
+            self._wanted + options.residual,
+        )
         self._feasibility = ProgramFeasibility(
             controller,
             self._scenes,

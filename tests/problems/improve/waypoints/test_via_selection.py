@@ -206,7 +206,7 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
     for changed in asked:
         place = changed.statements.index(switch)
         assert changed.statements[place - 1] == program.statements[1]
-    assert list(idle_points(best, selected(best), lambda changed: 0.0)) == [0, 2]
+    assert list(idle_points(best, selected(best), lambda changed, task: 0.0)) == [0, 2]
 
 
 def test_ctrl_c_between_two_searches_keeps_what_is_proven(monkeypatch: pytest.MonkeyPatch) -> None:
