@@ -38,9 +38,9 @@ def no_move(program: Program) -> MotionError:
             f"the answers to {_named(told)} have it so: others may lead to one ({spelt('answers')})"
         )
     run = {program.name.casefold(), *(_routine(call.text) for call in program.calls)}
-    others = [entry for entry in program.entries if entry.name.casefold() not in run]
+    others = [e for e in program.entries if e.name.casefold() not in run and not e.begun]
     if any(entry.moves for entry in others):
-        helps.append(f"choose as the entry the routine that drives: {listed(program.entries)}")
+        helps.append(f"choose as the entry the routine that drives: {listed(others)}")
     what = "reaches no move" if moving else "has no move"
     none = "what it computes leads to none" if moving else "nothing in it moves the robot"
     why = "; or ".join(helps) or none

@@ -433,3 +433,30 @@ def test_questions_say_what_an_answer_looks_like(tmp_path) -> None:
     answers.write_text(re.sub(r"(?m)^#(?=[\"\w])", "", asked.toml))
     again = flyby.ask(file, robot="abb/irb1600-6-145", answers=answers)
     assert all(q.answered for q in again if q.table == "values")
+
+
+@pytest.mark.parametrize(
+    ("stray", "asked"),
+    [
+        ("COST speeddata vSlow:=[20,10,200,10];", {"vslow"}),
+        ("PRES num n:=3;", set()),
+        ("ENDPROC", set()),
+        ("MoveL p,v100,fine,tool0;", set()),
+        ("v:=3;", set()),
+    ],
+)
+def test_what_begins_no_part_of_a_module_is_stepped_over(stray, asked):
+    p = "[[500,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+    speed = "vSlow" if asked else "v100"
+    text = (
+        f"MODULE M\nCONST robtarget p:={p};\n{stray}\nPERS num other:=1;\n"
+        f"PROC main()\nMoveL p,{speed},fine,tool0;\nMoveL Offs(p,0,0,other),v50,fine,tool0;\n"
+        "ENDPROC\nENDMODULE\n"
+    )
+    with pytest.raises(SourceError, match=r"^a.mod:3:1: .* stands where a declaration, PROC"):
+        read(text, "a.mod")
+    program = read(text, "a.mod", ReadOptions(answers=Answers(goes_on=True, mends=True)))
+    assert len(program.moves) == 2
+    assert {q.key.lower() for q in program.questions} == asked
+    damage = [note for note in program.notes if note.damage]
+    assert [note.span.line for note in damage] == [3]

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from flyby.core.errors import InputError, SourceError
+from flyby.core.program.question import QuestionKind
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import Reading, ReadOptions
 from flyby.core.source.text.files import SourceFile
 from flyby.vendors.abb.run.reader import read, read_file, read_sources
@@ -242,3 +244,26 @@ def test_variables_of_the_system_module_user():
     assert xs(
         read(module("M", proc("main", f"reg1:=5;\nClkReset clock1;\n{move('reg1+reg2')}")), "a")
     ) == [5]
+
+
+@pytest.mark.parametrize(
+    ("called", "routines", "wanted"),
+    [
+        ("Paint:Main", "", []),  # its module is not at hand, and main is not meant
+        ("Paint:Main", "paint", [7]),
+        ("M:pick", "", [3]),
+        ("paint:inner", "paint", [8]),  # one that only its own module sees
+    ],
+)
+def test_a_routine_that_is_called_with_its_module_is_of_that_module(
+    tmp_path, called, routines, wanted
+):
+    main = module("M", proc("main", move(1) + f'\n%"{called}"%;'), proc("pick", move(3)))
+    paint = module("Paint", "LOCAL " + proc("Main", move(7)), "LOCAL " + proc("inner", move(8)))
+    folder(tmp_path, m_mod=main, **({"paint_mod": paint} if routines else {}))
+    others = (tmp_path / "paint.mod",) if routines else ()
+    answers = Answers(skipped=frozenset({"paint:main"}))
+    program = read_file(tmp_path / "m.mod", ReadOptions(answers=answers, others=others))
+    assert [round(1000 * m.target.pose.position[0]) for m in program.moves] == [1, *wanted]
+    missing = [q.key for q in program.questions if q.kind is QuestionKind.ROUTINE]
+    assert missing == ([] if wanted else ["Paint:Main"])

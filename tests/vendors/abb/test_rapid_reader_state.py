@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
+from flyby.core.program.question import QuestionKind
 from flyby.core.registry import find_robot
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
@@ -246,3 +247,60 @@ def test_bits_are_set_and_cleared():
 )
 def test_functions_refuse_what_they_do_not_take(expression, words):
     assert words in refusal(f"s:=ValToStr({expression});")
+
+
+SHARED = "PERS num go; PERS bool ready; PERS num list{3}; VAR num mine;"
+
+
+@pytest.mark.parametrize("condition", ["go=1", "ready", "list{2}>4"])
+def test_a_persistent_datum_without_a_value_is_another_tasks(condition):
+    """Nobody at hand knows it: a branch that drives is taken, and the value is asked for."""
+    read = program(f"IF {condition} THEN\nMoveL p,v100,fine,tool0;\nENDIF", data=SHARED)
+    assert len(read.moves) == 1
+    (question,) = (q for q in read.questions if q.kind is QuestionKind.DATUM)
+    key = condition.split("=")[0].split(">")[0]
+    assert question.key == key
+    answers = Answers({key.lower(): False if key == "ready" else 0.0})
+    assert not program(
+        f"IF {condition} THEN\nMoveL p,v100,fine,tool0;\nENDIF", data=SHARED, answers=answers
+    ).moves
+
+
+def test_what_the_program_writes_itself_it_knows():
+    body = "go:=2;\nIF go=1 THEN\nMoveL p,v100,fine,tool0;\nENDIF\nIF mine=1 MoveL p,v9,fine,tool0;"
+    read = program(body, data=SHARED)
+    assert not read.moves
+    assert not read.questions
+
+
+STATES = """
+TEST state
+CASE 0:
+MoveL p,v100,fine,tool0;
+state:=1;
+CASE 1:
+MoveL Offs(p,0,0,10),v100,fine,tool0;
+state:=2;
+CASE 2:
+MoveL Offs(p,0,0,20),v100,fine,tool0;
+ENDTEST"""
+
+
+@pytest.mark.parametrize(
+    ("cycles", "heights"), [(1, [600]), (2, [600, 610]), (4, [600, 610, 620, 620])]
+)
+def test_main_is_run_again_and_again(cycles, heights):
+    read = program(STATES, data="VAR num state;", answers=Answers(cycles=cycles))
+    assert [round(1000 * m.target.pose.position[2]) for m in read.moves] == heights
+    said = [note for note in read.notes if "its next pass goes another way" in note.message]
+    assert [note.span.line for note in said] == ([11] if cycles == 1 else [])
+
+
+def test_a_main_that_goes_the_same_way_again_is_not_spoken_of():
+    count = "n:=n+1;\nIF mine=0 MoveL p,v100,fine,tool0;\nMoveL Offs(p,0,0,n),v100,fine,tool0;"
+    assert not any("next pass" in n.message for n in program(count, data=SHARED).notes)
+
+
+def test_an_endless_loop_in_main_is_its_passes():
+    body = "WHILE TRUE DO\nMoveL Offs(p,0,0,n),v100,fine,tool0;\nn:=n+10;\nENDWHILE"
+    assert len(program(body, answers=Answers(cycles=3)).moves) == 3

@@ -33,15 +33,18 @@ from ..motion.settings_instructions import SETS
 from ..motion.targets import Converter
 from ..syntax import tree
 from ..values.data import Globals
-from ..values.errors import BOOKED, NO_ROUTINE, NUMBERS, ProgramError
+from ..values.errors import BOOKED, ProgramError
 from ..values.evaluator import Evaluator
-from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable, unknown_name
-from ..values.types import STRING, Unknown, Value, find_unknown, interpreted, mismatch
+from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable
+from ..values.types import Value, find_unknown, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
+from .entry import MAIN
 from .flow import run_for, run_if, run_test, run_while
 from .instructions import INTERPRETED, MOVING
 from .kept import KEPT, REFUSED
+from .late import call_late, call_named
+from .passes import decisive, next_pass
 from .recovery import Frame, Retry, TryNext, raised, recover
 from .stepped_over import keep, step_over_missing, step_over_unread
 from .traps import connect
@@ -112,9 +115,15 @@ class Interpreter:
     # --------------------------------------------------------------------- the run
 
     def run(self, entry: tree.Routine, arguments: tuple[tree.Argument, ...] = ()) -> None:
-        """Execute a procedure to its end."""
+        """Execute a procedure to its end; ``main`` as often as the user says."""
+        scope = self.data.scope_of(entry)
+        before = decisive(self.evaluator, entry.body, scope) if entry.name == MAIN else ()
         with suppress(_Finished):
-            self._call(entry, arguments, self.data.scope_of(entry), entry.span)
+            for _ in range(self.course.answers.cycles if entry.name == MAIN else 1):
+                self.call(entry, arguments, scope, entry.span)
+            other = next_pass(self.evaluator, before) if self.course.answers.cycles == 1 else None
+            if other is not None:
+                self.out.notes.once("pass", other[1], other[0].span)
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -292,7 +301,7 @@ class Interpreter:
         elif isinstance(statement, tree.Goto):
             raise _Jump(statement)
         elif isinstance(statement, tree.LateInvoke):
-            self._late(statement, scope)
+            call_late(self, statement, scope)
         elif isinstance(statement, tree.Label):
             self.flow.label(id(statement))
         elif isinstance(statement, tree.Keyword):
@@ -340,7 +349,7 @@ class Interpreter:
         name = statement.name
         routine = self.data.routine(name, scope.home)
         if routine is not None and routine.kind == "proc":
-            self._call(routine, statement.arguments, scope, statement.span)
+            self.call(routine, statement.arguments, scope, statement.span)
             return
         statement = self._with_present_arguments(statement, scope)
         handler = INTERPRETED.get(name)
@@ -359,7 +368,7 @@ class Interpreter:
             return
         routine = None if name in REFUSED else self.fetched(statement, scope)
         if routine is not None:
-            self._call(routine, statement.arguments, scope, statement.span)
+            self.call(routine, statement.arguments, scope, statement.span)
         else:
             step_over_missing(self, statement, scope)
 
@@ -404,18 +413,6 @@ class Interpreter:
             return statement
         return replace(statement, arguments=tuple(present(statement.arguments, scope)))
 
-    def _late(self, statement: tree.LateInvoke, scope: Scope) -> None:
-        value = self.evaluator.evaluate(statement.routine, scope)
-        if isinstance(value, Unknown) and self.course.skips(
-            self.text_of(statement.routine), statement.span
-        ):
-            self.evaluator.outputs.forget()
-            self.out.keep(statement.span, "a call by name", "", device=True)
-            return
-        name = self.evaluator.known(statement.routine, scope, STRING, "the routine to call")
-        assert isinstance(name, str)
-        self.call_named(name, statement.arguments, scope, statement.span)
-
     def call_named(
         self, name: str, arguments: tuple[tree.Argument, ...], scope: Scope, span: Span
     ) -> None:
@@ -424,20 +421,11 @@ class Interpreter:
         Raises:
             SourceError: there is none.
         """
-        _, _, own = name.rpartition(":")
-        routine = self.data.fetched_routine(own.strip().lower(), scope.home, span)
-        if routine is None or routine.kind != "proc":
-            if self.course.skips(name, span):
-                self.evaluator.outputs.forget()
-                self.out.keep(span, name, "", device=True)
-                return
-            known = self.data.routine_names("proc")
-            raise ProgramError(unknown_name("routine", name, known), span, NUMBERS[NO_ROUTINE])
-        self._call(routine, arguments, scope, span)
+        call_named(self, name, arguments, scope, span)
 
     def call_function(self, routine: tree.Routine, call: tree.Call, scope: Scope) -> Value:
         reader, self.evaluator.reader = self.evaluator.reader, ELSEWHERE
-        value = self._call(routine, call.arguments, scope, call.span)
+        value = self.call(routine, call.arguments, scope, call.span)
         self.evaluator.reader = reader
         if value is None:
             raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
@@ -447,9 +435,10 @@ class Interpreter:
             raise SourceError(f"the value of {routine.text}: {wrong}", call.span)
         return interpreted(value, type_, call.span)
 
-    def _call(
+    def call(
         self, routine: tree.Routine, arguments: tuple[tree.Argument, ...], caller: Scope, span: Span
     ) -> Value | None:
+        """Run a routine."""
         outer = self.data.scope_of(routine)
         scope = outer.inner(f"{routine.kind.upper()} {routine.text}")
         given = tuple(present(arguments, caller))

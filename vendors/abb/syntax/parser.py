@@ -113,7 +113,7 @@ def _content(
         elif kind == "alias":
             types.append(_alias(cursor, begin, local))
         else:
-            raise cursor.unexpected("a declaration, PROC, FUNC, TRAP or ENDMODULE")
+            declarations += _stray(cursor, begin, local)
     cursor.advance()
     return Module(
         cursor.span_from(start),
@@ -149,6 +149,22 @@ def _mended(cursor: Cursor, start: int, local: bool = False) -> list[Declaration
         return found
 
 
+def _stray(cursor: Cursor, start: int, local: bool) -> list[Declaration]:
+    """What stands in a module and begins no part of it, as a misspelt CONST does.
+
+    Raises:
+        ParseError: it may not be stepped over.
+    """
+    begin = cursor.index
+    error = cursor.unexpected("a declaration, PROC, FUNC, TRAP or ENDMODULE")
+    cursor.step_over(error, "it is stepped over, and what it declares is not known")
+    found = []
+    if cursor.kinds[begin : begin + 3] == [NAME] * 3:
+        found = _declared(cursor, begin, start, local, error.message)
+    cursor.skip_statement(begin, (*_PARTS, *CLOSING))
+    return found
+
+
 def _declared(
     cursor: Cursor, begin: int, start: int, local: bool, message: str
 ) -> list[Declaration]:
@@ -165,7 +181,7 @@ def _declared(
         cursor.index = stopped
     span = cursor.source.span(start, max(start, cursor.end))
     value = Unreadable(span, message)
-    kind = cursor.kinds[begin]
+    kind = cursor.kinds[begin] if cursor.kinds[begin] in STORAGE else "var"
     return [Declaration(span, kind, type_name, text.lower(), text, dimensions, value, local)]
 
 

@@ -65,6 +65,13 @@ class Globals:
             self.routines.get(name) if self._fetch(name, span) else None
         )
 
+    def routine_of(self, module: str, name: str, span: Span) -> Routine | None:
+        """A routine of a module that is named with it, its own (``LOCAL``) ones included."""
+        if not any(m.name == module for m in self.modules):
+            self._fetch(name, span)
+        own = (r for m in self.modules if m.name == module for r in m.routines)
+        return next((r for r in own if r.name == name), None)
+
     def fetched_cell(self, name: str, span: Span) -> Variable | None:
         """A datum of the library, for a name that no scope knows."""
         return self._shared.cells.get(name) if self._fetch(name, span) else None

@@ -103,13 +103,18 @@ def carried(unknown: Unknown, compute: Callable[[], Value | None]) -> Unknown:
     return replace(unknown, nominal=None if isinstance(value, Unknown) else value)
 
 
-def unset(type_: Type, name: str, where: Span) -> Value:
+def unset(type_: Type, name: str, where: Span, *, shared: bool = False) -> Value:
     """The value of a datum that is declared without one: zeros, but where these mean nothing.
 
     Args:
         name: of the datum.
         where: it is declared.
+        shared: a ``PERS``: the task that declares it with a value has it.
     """
+    if shared and isinstance(type_, Scalar):
+        declared = f"line {where.line} of {where.file} declares it as PERS without one"
+        reason = f"the value of '{name}', which another task has: {declared}"
+        return Unknown(reason, where, name, type_.default)
     place = f"which nothing sets: line {where.line} of {where.file} declares it without a value"
 
     def missing(what: str, taken: Value) -> Unknown:

@@ -197,7 +197,8 @@ class Names(ABC):
             reason = f"'{declaration.text}', a {type_.name}"
             return filled(Unknown(reason, declaration.span, declaration.text), sizes), None, None
         if declaration.value is None:
-            value = unset(type_, declaration.text, declaration.span)
+            shared = declaration.kind == "pers"
+            value = unset(type_, declaration.text, declaration.span, shared=shared)
             return filled(value, sizes), None, None
         found = self.locate(declaration.value, scope)
         value = found.value
