@@ -6,10 +6,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
+from ..core.door import spelt
+from ..core.errors import FaultCause, MotionError, Note
+from .fitting import arms_that_fit
 from .options.entries import TIME, Extent, number, switch
 from .options.keywords import by_keywords
 from .results.cell_course import CellCourse
-from .setup import RobotOptions, start_of, with_setup
+from .setup import RobotOptions, Setup, start_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
@@ -56,7 +59,10 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     options.say(f"emulating {counted(program.moves, 'move')}")
     controller = Controller(setup.vendor, setup.robot)
     course = CellCourse.of(program, setup)
-    driven = drive(controller, course.program, start_of(program), options.period)
+    try:
+        driven = drive(controller, course.program, start_of(program), options.period)
+    except MotionError as error:
+        raise _with_others(error, program, setup) from error
     if options.strict and driven.faults:
         raise refusal(driven.faults)
     noted = tuple(
@@ -68,12 +74,31 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     )
     options.say("measuring clearances")
     clearances, odd = course.clearances(setup, noted)
-    own = replace(program, notes=(*program.notes, *course.notes, *odd))
+    misfit = _misfit(program, setup) if driven.faults else ()
+    own = replace(program, notes=(*program.notes, *course.notes, *odd, *misfit))
     ranges = [duration_range(controller, part.run) for part in driven.parts]
     known = [found for found in ranges if found is not None]
     between = (sum(least for least, _ in known), sum(most for _, most in known)) if known else None
     whole = replace(driven, program=own, parts=noted)
     return Run.of(whole, setup.robot, clearances, between)
+
+
+def _misfit(program: Program, setup: Setup) -> tuple[Note, ...]:
+    """That the robot that is named may not be the program's: others can take all its places."""
+    if setup.cell is not None or setup.backup is not None:
+        return ()
+    said = arms_that_fit(program, setup.vendor, setup.robot)
+    stands = f"is it the right one, and does it stand in the world's origin ({spelt('cell')})?"
+    return (Note(f"{said}: {stands}"),) if said else ()
+
+
+def _with_others(error: MotionError, program: Program, setup: Setup) -> MotionError:
+    """The same error, with what is to be said of the robot."""
+    if error.cause not in (FaultCause.REACH, FaultCause.LIMIT):
+        return error
+    notes = (str(note) for note in _misfit(program, setup))
+    message = "; ".join((error.message, *notes))
+    return type(error)(message, error.move, error.span, error.cause)
 
 
 emulate = by_keywords(emulate_with, EmulateOptions)

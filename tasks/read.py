@@ -14,6 +14,7 @@ from .backup.finding import find_backup
 from .backup.opening import read_task, setup_in, task_of, told_of_setup
 from .backup.surrounding import surrounding_note
 from .catalogue import registry
+from .fitting import arms_that_fit
 from .options.entries import TaskOptions, count, value
 from .options.keywords import by_keywords
 from .options.texts import joint_target
@@ -105,9 +106,8 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         if options.robot is not None or options.cell is not None:
             raise
         _check_it_is_a_program(source)
-        if note is None:
-            raise
-        raise type(error)(f"{error}; {note}") from None
+        told = [str(error), *([] if note is None else [str(note)]), *_fitting(source, options)]
+        raise type(error)("; ".join(told)) from None
     vendor, robot = setup.vendor, setup.robot
     start = joint_target(options.start, spelt("start"), robot)
     if isinstance(source, str) and "\n" in source:
@@ -170,6 +170,19 @@ def _vendor_in(folder: Path) -> Vendor:
         raise InputError(f"{folder} is a folder without a program")
     names = " and ".join(vendor.name for vendor in found)
     raise InputError(f"{folder} is a folder with programs of {names}: name a program file in it")
+
+
+def _fitting(source: str | Path, options: SourceOptions) -> list[str]:
+    """What a program says by itself of the robot that nobody names."""
+    if isinstance(source, str) and "\n" in source:
+        return []
+    try:
+        program = read_undriven(source, options)
+        vendor = registry().reader_of(Path(program.reading.main)) if program.reading else None
+    except FlybyError:
+        return []
+    said = "" if vendor is None else arms_that_fit(program, vendor)
+    return [said] if said else []
 
 
 def _surrounding(source: str | Path) -> Note | None:
