@@ -212,7 +212,7 @@ class Controller:
             except MotionError as error:
                 raise _located(error, program) from error
             try:
-                check_path(self.robot, path, (start or program.start) is not None)
+                check_path(self.robot, program, path, (start or program.start) is not None)
             except MotionError as error:
                 raise _located(error, program) from None
             return replace(path, notes=(*notes, *path.notes))

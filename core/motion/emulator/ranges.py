@@ -8,21 +8,29 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...errors import FaultCause, MotionError
+from ...program.program import Program
+from ...program.target import JointTarget
 from ...robot.joint import JointKind
 from ...robot.model import Robot
 from ..path.path import Path
 
 OTHER_TARGET = "choose another configuration or move the target"
 """Advice where a joint does not reach a target."""
+OWN_VALUE = (
+    "the program says this value itself: change it there, or see whether the robot is the right "
+    "one, with the ranges that its own controller has"
+)
+"""The same where the target is the joints' values."""
 _SLACK = 1e-6
 """rad or m by which a path may pass a joint limit: rounding of programmed values."""
 
 
-def check_path(robot: Robot, path: Path, started: bool) -> None:
+def check_path(robot: Robot, program: Program, path: Path, started: bool) -> None:
     """Refuse the first move that passes a range.
 
     Args:
         robot: that drives it.
+        program: whose path it is.
         path: all of it.
         started: whether someone said where the robot starts.
 
@@ -39,7 +47,10 @@ def check_path(robot: Robot, path: Path, started: bool) -> None:
     move = int(moves[samples[0]])
     samples = samples[moves[samples] == move]
     row, which = np.unravel_index(np.argmax(beyond[samples]), beyond[samples].shape)
-    said = _excess(robot, int(which), path.q[samples[row]], OTHER_TARGET)
+    target = program.moves[move].target
+    at_target = isinstance(target, JointTarget) and which < robot.arm_size
+    remedy = OWN_VALUE if at_target else OTHER_TARGET
+    said = _excess(robot, int(which), path.q[samples[row]], remedy)
     raise MotionError(said, move, cause=FaultCause.LIMIT)
 
 

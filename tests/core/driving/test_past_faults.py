@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import flyby
 from flyby.core.driving.driven_program import Fault, refusal
 from flyby.core.driving.past_faults import drive, refuse_faults
 from flyby.core.errors import FaultCause, MotionError, Span
@@ -237,3 +238,18 @@ def test_the_moves_of_a_loop_are_named_by_their_line_and_counted() -> None:
         "no way 0. 4 further moves cannot be driven: 2 in this line; "
         "move 6, line 7 (reach, 2 times)"
     )
+
+
+def test_a_posture_beyond_a_range_is_the_programs_own_value(tmp_path) -> None:
+    """Another configuration cannot mend what the program says of the joints themselves."""
+    unused = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+    postures = ("0,0,0,0,30,0", "0,9,0,0,30,0", "0,0,90,0,30,0", "0,10,0,0,30,0")
+    moves = "".join(f"MoveAbsJ [[{q}],{unused}],v500,fine,tool0;\n" for q in postures)
+    file = tmp_path / "a.mod"
+    file.write_text(f"MODULE M\nPROC main()\n{moves}ENDPROC\nENDMODULE\n")
+    run = flyby.emulate(flyby.read(file, robot="abb/irb140-6-081"))
+    (fault,) = run.faults
+    assert fault.span is not None and fault.span.line == 5
+    assert "J3 would stand at 90.00 °" in fault.message
+    assert "the program says this value itself" in fault.message
+    assert "configuration" not in fault.message
