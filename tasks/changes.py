@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -12,11 +12,12 @@ from ..core.errors import InputError, Note, OptionError
 from .files.not_executed import not_executed_notes
 from .options import texts
 from .options.entries import ANGLE, COUNT, DISTANCE, NOT_NEGATIVE, Extent, number, value
-from .options.idle import ALL, idle_kept, idle_limits
+from .options.idle import ALL, idle_freed, idle_kept, idle_limits
 from .options.moves import NAMED, is_named, listed_names, moves_named, moves_to, targets
 from .setup import RobotOptions, Setup, like, start_of
 
 if TYPE_CHECKING:
+    from ..core.dialect import SignalWords
     from ..core.handling.handling import Handling
     from ..core.program.program import Program
     from ..core.vendor import Vendor
@@ -38,7 +39,8 @@ class ChangeOptions(RobotOptions):
     free: Sequence[int | str] = value(
         (),
         "A stop that may be passed: the number of its move, line:44, the name of its target, or "
-        "'all'; may be given several times.",
+        "'all'; or an output, which is then on along no process, so that points on the way may "
+        "change; may be given several times.",
         several=True,
     )
     keep: Sequence[int | str] = value(
@@ -102,18 +104,25 @@ def task_of(
 
     by_move, for_all = _limits(program, options.limit)
     kept, speeds = kept_moves(program, options.keep)
-    held = {*kept, *at_speeds(program, speeds)}
+    handled = targets_of(handling)
+    process = process_of(program, setup, options.free, handled)
     return WaypointTask(
         time_weight=weight(objective, spelt("objective")),
         keep=kept,
         keep_speeds=speeds,
+        process=process,
         limits=by_move,
         limit=for_all or Free(),
         axes=None if options.axes is None else joint_indices(options.axes, setup.robot.arm_size),
         tilt=options.tilt,
         clearance=options.clearance,
         freed=freed_stops(
-            program, options.free, {*held, *(i - 1 for i in held)}, targets_of(handling)
+            program,
+            setup,
+            options.free,
+            with_begins({*kept, *at_speeds(program, speeds)}),
+            handled,
+            with_begins(process),
         ),
         pattern=pattern_for(setup.vendor.speaks),
         rounding=rounding_of(setup.vendor, predefined),
@@ -128,7 +137,9 @@ def targets_of(handling: Handling | None) -> tuple[int, ...]:
     return () if handling is None else handling.targets
 
 
-def idle_notes(program: Program, options: WaypointOptions, task: WaypointTask) -> list[Note]:
+def idle_notes(
+    program: Program, setup: Setup, options: WaypointOptions, task: WaypointTask
+) -> list[Note]:
     """Notes on options that change nothing of what is done."""
     from ..core.program.target import JointTarget
     from ..core.program.zone import Fine
@@ -137,6 +148,7 @@ def idle_notes(program: Program, options: WaypointOptions, task: WaypointTask) -
     passed = {i for i, move in enumerate(moves) if not isinstance(move.zone, Fine)}
     passed |= set(task.freed)
     notes = idle_kept(program, options.keep, passed, path=True)
+    notes += idle_freed(program, options.free, outputs_at_work(program, setup))
     notes += idle_limits(program, options.limit, passed)
     by_joints = any(isinstance(moves[i].target, JointTarget) for i in passed)
     if options.axes is not None and not by_joints:
@@ -219,30 +231,79 @@ def joint_indices(given: str | Sequence[int], count: int) -> list[int]:
     return [int(word) - 1 for word in words]
 
 
+def with_begins(moves: Iterable[int]) -> set[int]:
+    """Indices of moves, and of those that end where they begin."""
+    return {near for i in moves for near in (i - 1, i)}
+
+
+def process_of(
+    program: Program, setup: Setup, free: Sequence[int | str], handled: Collection[int]
+) -> dict[int, str]:
+    """Outputs by the indices of the moves that are taken for work, as they are on along them.
+
+    Args:
+        program: the program.
+        setup: its robot, which says how its language sets outputs.
+        free: what may change: stops, and outputs that are no process.
+        handled: indices of the moves at whose targets parts are taken or released; what is switched
+            there holds them.
+    """
+    from ..problems.improve.process_paths import along_process, process_paths
+
+    paths = process_paths(program, _words(setup))
+    holding = [p.output for p in paths if {p.first - 1, p.last} & set(handled)]
+    return along_process(paths, {name.casefold() for name in (*map(str, free), *holding)})
+
+
+def outputs_at_work(program: Program, setup: Setup) -> frozenset[str]:
+    """Names of the outputs that are on along a path that is taken for work."""
+    from ..problems.improve.process_paths import process_paths
+
+    return frozenset(path.output.casefold() for path in process_paths(program, _words(setup)))
+
+
+def _words(setup: Setup) -> SignalWords | None:
+    speaks = setup.vendor.speaks
+    return None if speaks is None else speaks.signals
+
+
 def freed_stops(
     program: Program,
+    setup: Setup,
     free: Sequence[int | str],
     kept: Collection[int],
     handled: Collection[int] = (),
+    process: Collection[int] = (),
 ) -> list[int]:
     """Indices of the stops that may be passed.
 
     Args:
         program: the program.
-        free: moves by number, line or target, or ``all``.
+        setup: its robot.
+        free: moves by number, line or target, or ``all``; and outputs, which name no stops.
         kept: indices of the moves whose zones are to stay; ``all`` leaves them out.
         handled: of those at whose targets parts are taken or released; likewise.
+        process: of those that a process begins, ends or passes at; only ``all`` leaves them out.
 
     Raises:
         InputError: naming the option.
     """
+    from ..problems.improve.process_paths import outputs_of
     from ..problems.improve.zones.points import passable_stops
 
     if ALL in free:
-        return [i for i in passable_stops(program) if i not in {*kept, *handled}]
+        return [i for i in passable_stops(program) if i not in {*kept, *handled, *process}]
     freed: list[int] = []
+    outputs = outputs_of(program, _words(setup)) if free else ()
     for text in free:
-        for i in moves_named(program, text, "free"):
+        if str(text).casefold() in map(str.casefold, outputs):
+            continue
+        try:
+            named = moves_named(program, text, "free")
+        except InputError as error:
+            known = f"; outputs that it sets: {listed_names(outputs)}" if outputs else ""
+            raise type(error)(f"{error}{known}") from None
+        for i in named:
             if i in handled:
                 raise OptionError(
                     f"{spelt('free')} {text}: a part of the cell is taken or released there, so "

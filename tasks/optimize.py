@@ -123,7 +123,9 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
         return course.loaded(texts.read_back(course.unloaded(changed)))
 
     found = optimize_waypoints(controller, course.program, cell, task, effort, read_back, report)
-    return delivered(course.given_back(found), texts, setup, idle_notes(program, options, task))
+    return delivered(
+        course.given_back(found), texts, setup, idle_notes(program, setup, options, task)
+    )
 
 
 def effort_of(starts: int | None, generations: int | None, seed: int) -> Effort:

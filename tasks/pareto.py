@@ -82,7 +82,7 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         texts.read_back,
         report,
     )
-    made = replace(made, notes=(*idle_notes(program, options, wishes), *made.notes))
+    made = replace(made, notes=(*idle_notes(program, setup, options, wishes), *made.notes))
     return ProgramFront.of(made, program, texts, setup)
 
 

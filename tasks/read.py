@@ -106,7 +106,7 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         if options.robot is not None or options.cell is not None:
             raise
         _check_it_is_a_program(source)
-        told = [str(error), *([] if note is None else [str(note)]), *_fitting(source, options)]
+        told = [str(error), *(_fitting(source, options) if note is None else [str(note)])]
         raise type(error)("; ".join(told)) from None
     vendor, robot = setup.vendor, setup.robot
     start = joint_target(options.start, spelt("start"), robot)

@@ -6,10 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .changes import ChangeOptions, at_speeds, delivered, freed_stops, kept_moves, rounding_of
+from .changes import (
+    ChangeOptions,
+    at_speeds,
+    delivered,
+    freed_stops,
+    kept_moves,
+    outputs_at_work,
+    process_of,
+    rounding_of,
+    with_begins,
+)
 from .files.texts import ProgramTexts
 from .options.entries import switch, value
-from .options.idle import ALL, idle_kept
+from .options.idle import ALL, idle_freed, idle_kept
 from .options.keywords import by_keywords
 from .results.cell_course import CellCourse
 from .setup import CellOptions, controller_of, start_of, with_setup
@@ -70,11 +80,13 @@ def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) 
     course = CellCourse.of(program, setup)
     moves, speeds = kept_moves(program, options.keep)
     kept = {*moves, *at_speeds(program, speeds)}
+    process = process_of(program, setup, options.free, course.handled)
     wanted = ZoneTask(
         clearance=options.clearance,
-        freed=freed_stops(program, options.free, kept, course.handled),
+        freed=freed_stops(program, setup, options.free, kept, course.handled, with_begins(process)),
         pattern=pattern_for(setup.vendor.speaks),
         kept=sorted({*kept, *course.handled}),
+        process=process,
         apart=options.own,
         rounding=rounding_of(setup.vendor, options.predefined),
         start=start_of(program),
@@ -89,7 +101,7 @@ def zones_beside(program: Program, options: ZoneOptions, beside: Beside | None) 
 
     found = maximize_zones(controller, course.program, cell, wanted, read_back, options.say)
     able = {i for i, move in enumerate(program.moves) if not isinstance(move.zone, Fine)}
-    able |= set(freed_stops(program, options.free, ())) if ALL in options.free else set()
-    return delivered(
-        course.given_back(found), texts, setup, idle_kept(program, options.keep, able, path=False)
-    )
+    able |= set(freed_stops(program, setup, options.free, ())) if ALL in options.free else set()
+    idle = idle_kept(program, options.keep, able, path=False)
+    idle += idle_freed(program, options.free, outputs_at_work(program, setup))
+    return delivered(course.given_back(found), texts, setup, idle)

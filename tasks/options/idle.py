@@ -35,6 +35,25 @@ def idle_kept(
     return notes
 
 
+def idle_freed(
+    program: Program, freed: Sequence[int | str], at_work: Collection[str]
+) -> list[Note]:
+    """Notes on outputs that are freed, and are on along no path that was taken for work.
+
+    Args:
+        program: the program.
+        freed: as given; they are known to name stops or outputs.
+        at_work: names of the outputs that are, without regard to case.
+    """
+    names = [text for text in map(str, freed) if text != ALL and not is_named(text)]
+    why = "nothing is kept for it, as it is on along no lines at one speed"
+    return [
+        Note(f"{spelt('free')} {text} has no effect: {why}")
+        for text in names
+        if text.casefold() not in at_work and not moves_to(program.moves, text)
+    ]
+
+
 def idle_limits(
     program: Program, limits: Sequence[str] | Mapping[int | str, object], passed: Collection[int]
 ) -> list[Note]:

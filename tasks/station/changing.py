@@ -158,7 +158,7 @@ def _shares(opened: OpenedStation, options: StationChangeOptions) -> dict[str, S
 
     asked: dict[str, Callable[[Program, str], object]] = {
         "keep": lambda program, text: kept_moves(program, [text]),
-        "free": lambda program, text: freed_stops(program, [text], ()),
+        "free": lambda program, text: freed_stops(program, setup_of_program(program), [text], ()),
     }
     found: dict[str, dict[str, list[str]]] = {
         name: {"keep": [], "free": []} for name in opened.station.members

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...core.door import spelt
 from ...core.errors import InputError, UnknownNameError
-from ..changes import kept_moves
+from ..changes import kept_moves, process_of
 from ..files.texts import ProgramTexts
 from ..optimize import OptimizeOptions, optimize_beside
 from ..options.entries import ANGLE, COUNT, Extent, number, switch, value
@@ -178,7 +178,11 @@ def _slow(
         share.name,
         scenes_of(member.cell),
         setup.vendor.speaks,
-        WaypointTask(keep=moves, keep_speeds=speeds),
+        WaypointTask(
+            keep=moves,
+            keep_speeds=speeds,
+            process=process_of(member.program, setup, share.free, ()),
+        ),
         start_of(member.program),
         reserve,
     ).run(texts.read_back)

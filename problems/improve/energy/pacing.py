@@ -191,6 +191,7 @@ def _held(move: Move, i: int, wishes: Wishes) -> bool:
     names: Collection[str] = wishes.keep_speeds
     return (
         i in wishes.keep
+        or i in wishes.process
         or move.speed.name in names
         or bool(move.events)
         or move.speed.duration is not None

@@ -26,6 +26,7 @@ from ....core.program.program import Program
 from ....core.program.target import JointTarget
 from ....core.program.zone import ContourFraction, Fine, Radius, VendorZone
 from ....core.robot.model import Robot
+from ..process_paths import why_process
 from ..zones.points import passable_stops
 from .options import Freedom, WaypointTask
 from .oriented import stays_oriented
@@ -66,6 +67,7 @@ def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Se
     """
     moves = program.moves
     process = _process_moves(program, task)
+    work = {i: why_process(output) for i, output in task.process.items()} | process
     passed = tuple(
         owner
         for zone, owner in zip(path.route.zones, path.route.zone_moves, strict=True)
@@ -75,7 +77,9 @@ def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Se
     why_zone: dict[int, str] = {}
     why_point: dict[int, str] = {}
     for i in passed:
-        reason = task.settled.get(task.given_move(i)) or _why_untouched(i, after[i], process)
+        asked = i in task.freed or not isinstance(task.limits.get(i, Fixed()), Fixed)
+        reason = task.settled.get(task.given_move(i))
+        reason = reason or _why_untouched(i, after[i], process if asked else work)
         if reason is None and not _sizable(moves[i]):
             why_zone[i] = "its zone has no radius to change"
         elif reason is not None:

@@ -19,6 +19,7 @@ from ...reading_back import ReadBack, read_as_written
 from ...scene_notes import scene_notes
 from ..approaches import approach_notes
 from ..gains import seconds_gained
+from ..process_paths import lines_moved
 from ..progress import Progress, Report
 from ..rounding import Rounding
 from ..solution import Solution, measure, moved_points
@@ -125,6 +126,8 @@ class _Optimization:
         if self.task.vias is ViaCount.KEEP:
             notes += self._idle(found)
         notes += approach_notes(given, found.run)
+        moved = moved_points(self.controller.robot, given, found.run)
+        notes += lines_moved(program, moved)
         after = measure(self.controller, found.run, found.certificate)
         return Solution(
             program,
@@ -133,7 +136,7 @@ class _Optimization:
             after,
             found.certificate,
             tuple(notes),
-            moved_points(self.controller.robot, given, found.run),
+            moved,
             gained=seconds_gained(given, found.run),
         )
 
@@ -376,7 +379,10 @@ def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Not
                 "stops that the robot may pass"
             )
         ]
-    notes = [Note(f"stays as it is: {why}", move) for move, why in selection.reasons.items()]
+    notes = [
+        Note(f"stays as it is: {why}", move, program.moves[move].statement)
+        for move, why in selection.reasons.items()
+    ]
     if freedom is Freedom.WAYPOINTS_AND_ZONES and not selection.points:
         notes.append(Note("no via point may move: only zones are optimised"))
     return notes

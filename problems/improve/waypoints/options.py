@@ -51,6 +51,8 @@ class WaypointTask:
         keep: indices of moves (from 0) whose path and speed the process fixes: they stay as they
             are, with the zones at both their ends.
         keep_speeds: names of speeds by which such moves are known.
+        process: outputs by the indices of the moves that are driven while they are on, and stay
+            likewise, except for a point with a limit of its own that lets it move.
         limits: how far the via points at the ends of these moves may be moved.
         limit: the same for all others.
         axes: joints (from 0) that joint targets may change; None for all.
@@ -82,6 +84,7 @@ class WaypointTask:
     time_weight: float = 1.0
     keep: Collection[int] = ()
     keep_speeds: Collection[str] = ()
+    process: Mapping[int, str] = field(default_factory=dict)
     limits: Mapping[int, PointLimit] = field(default_factory=dict)
     limit: PointLimit = FREE
     axes: Collection[int] | None = None
@@ -162,6 +165,7 @@ class WaypointTask:
         return replace(
             self,
             keep=[k for i in self.keep if (k := new(i)) is not None],
+            process={k: v for i, v in self.process.items() if (k := new(i)) is not None},
             freed=[k for i in self.freed if (k := new(i)) is not None],
             limits={i: limit for i, limit in limits.items() if i is not None},
             given=tuple(given[k] for k in range(count)),

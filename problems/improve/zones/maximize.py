@@ -121,7 +121,13 @@ class _Maximization:
         self._tell("looking at the program as it is")
         freed = dict.fromkeys(options.freed, options.pattern)
         points = find_points(
-            self._controller, program, options.start, freed, options.kept, options.apart
+            self._controller,
+            program,
+            options.start,
+            freed,
+            options.kept,
+            options.apart,
+            options.process,
         )
         before, proof = self._feasibility.given(program)
         found, zones = self._grown(points, before)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 
 from ....core.errors import InputError
 from ....core.handling.handling import Handling
@@ -28,6 +28,8 @@ class ZoneTask:
         freed: indices of moves that end in a stop and may be passed instead.
         pattern: proportions of the zones that freed stops get.
         kept: indices of moves whose zone stays as it is.
+        process: outputs by the indices of the moves that are driven while they are on; the zones
+            at both ends of these stay, too.
         apart: whether zones that the source states in one datum may become different ones.
         rounding: of the new zones, as the program's language writes them, or to a vendor's
             predefined ones.
@@ -45,6 +47,7 @@ class ZoneTask:
     freed: Collection[int] = ()
     pattern: Radius | VendorZone = GRADED
     kept: Collection[int] = ()
+    process: Mapping[int, str] = field(default_factory=dict)
     apart: bool = False
     rounding: Rounding = _ROUNDING
     tolerance: float = TOLERANCE

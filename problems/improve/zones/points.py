@@ -14,6 +14,7 @@ from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget
 from ....core.program.zone import FINE, Fine, Zone
+from ..process_paths import why_process
 from ..rounding import SMALLEST
 from .sizes import Growth, size_of
 
@@ -48,6 +49,7 @@ def find_points(
     freed: Mapping[int, Zone],
     kept: Collection[int],
     apart: bool,
+    process: Mapping[int, str],
 ) -> Points:
     """The points of a program whose zones may change.
 
@@ -58,6 +60,7 @@ def find_points(
         freed: indices of moves whose stop may become a zone, and one of its proportions.
         kept: indices of moves whose zone stays as it is.
         apart: whether zones that the source states in one datum may part.
+        process: see `ZoneTask`.
 
     Raises:
         InputError: a move that is freed cannot be passed, or nothing can be.
@@ -73,6 +76,9 @@ def find_points(
             continue
         if size_of(freed.get(i, move.zone)) == 0:
             continue
+        output = process.get(i) or process.get(i + 1)
+        if output is not None and i not in freed:
+            notes.append(_note(moves, i, why_process(output)))
         elif i in skipped:
             notes.append(_note(moves, i, skipped[i]))
         else:

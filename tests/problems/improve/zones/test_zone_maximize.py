@@ -334,7 +334,7 @@ END
 def test_a_zone_by_speed_grows_by_its_share_and_keeps_its_kind():
     vendor, robot = find_vendor("kuka"), find_robot("kuka/kr30-3")
     program = vendor.read(BY_SPEED, "corners.src", robot=robot)
-    points = find_points(Controller(vendor, robot), program, None, {}, (), False)
+    points = find_points(Controller(vendor, robot), program, None, {}, (), False, {})
     growth, _ = points.growths.values()
     assert [points.move[corner] for corner in points.growths] == [1, 2]
     assert growth.rounded(0.678, Rounding()) == C_VEL.sized(0.67)
@@ -346,7 +346,7 @@ def test_a_zone_by_speed_grows_by_its_share_and_keeps_its_kind():
 
 
 def _enlarged() -> tuple[Points, dict[int, Zone], Repair]:
-    points = find_points(CONTROLLER, PROGRAM, None, {}, (), False)
+    points = find_points(CONTROLLER, PROGRAM, None, {}, (), False, {})
     zones = {i: GRADED.resized(0.1) for i in points.growths}
     return points, zones, Repair(points, PROGRAM, zones, Rounding())
 

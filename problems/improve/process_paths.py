@@ -1,0 +1,142 @@
+"""Where an output shows that the robot works along its path: what it glues, welds or cuts there.
+
+No program says which of its points the process needs. But where an output goes on, the robot then
+drives along lines and arcs alone, all at one speed, and the output goes off again, the path is
+taken to be the work itself. Way through the air is driven by joint moves or at speeds of its own,
+and what only opens and shuts at stops lies between no moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from ...core.dialect import SignalWords
+from ...core.door import spelt
+from ...core.errors import Note
+from ...core.program.event import EventAnchor
+from ...core.program.move import Move, MoveJ, Opaque
+from ...core.program.program import Program
+from ...core.program.signal import SetSignal
+from ...core.program.zone import Fine
+from .solution import Moved
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessPath:
+    """Moves in a row along which an output is on.
+
+    Args:
+        output: its name, as the language spells it.
+        first, last: indices of the moves.
+    """
+
+    output: str
+    first: int
+    last: int
+
+
+def process_paths(program: Program, words: SignalWords | None) -> tuple[ProcessPath, ...]:
+    """The paths of a program that are work, in the order in which they end.
+
+    Args:
+        program: the program.
+        words: how its language sets outputs; None if nobody knows, and none is found.
+    """
+    begun: dict[str, int] = {}
+    found: list[ProcessPath] = []
+    for first, last, action in () if words is None else _switched(program, words):
+        key = action.name.casefold()
+        if action.value and action.pulse is None:
+            begun.setdefault(key, first)
+        elif key in begun:
+            begin = begun.pop(key)
+            if _is_work(program.moves[begin : last + 1]):
+                found.append(ProcessPath(action.name, begin, last))
+    return tuple(found)
+
+
+def outputs_of(program: Program, words: SignalWords | None) -> tuple[str, ...]:
+    """Names of the outputs that a program sets, each once, in the order in which they come."""
+    switched = () if words is None else _switched(program, words)
+    return tuple({action.name.casefold(): action.name for _, _, action in switched}.values())
+
+
+def along_process(paths: Sequence[ProcessPath], free: Collection[str]) -> dict[int, str]:
+    """Outputs by the indices of the moves that they are on along.
+
+    Args:
+        paths: of the program.
+        free: names of outputs that are no process, without regard to case.
+    """
+    return {
+        i: path.output
+        for path in paths
+        if path.output.casefold() not in free
+        for i in range(path.first, path.last + 1)
+    }
+
+
+def lines_moved(given: Program, moved: Sequence[Moved]) -> list[Note]:
+    """Notes on points in a row, on lines at one speed, that are no longer where they were.
+
+    Nothing shows whether the tool works there: a valve may be opened by a routine, or by hand.
+
+    Args:
+        given: the program before.
+        moved: its points that are elsewhere now.
+    """
+    moves, distance = given.moves, {one.move: one.distance for one in moved}
+    lines = [i for i in distance if _is_work(moves[i : i + 2])]
+    notes, begin = [], 0
+    for end in range(1, len(lines) + 1):
+        if end < len(lines) and lines[end] == lines[end - 1] + 1:
+            continue
+        row, begin = lines[begin:end], end
+        if len(row) > 1:
+            furthest = 1e3 * max(distance[i] for i in row)
+            message = (
+                f"{len(row)} points in a row, on lines at one speed, are moved by up to "
+                f"{furthest:.3g} mm: if the tool works along there, {spelt('keep')} them"
+            )
+            notes.append(Note(message, row[0], moves[row[0]].statement))
+    return notes
+
+
+def why_process(output: str) -> str:
+    """Why a point stays that lies on such a path."""
+    return (
+        f"{output} is on there, along lines at one speed, as where a tool works on its way "
+        f"({spelt('free')} {output} if it does not)"
+    )
+
+
+def _switched(program: Program, words: SignalWords) -> Iterator[tuple[int, int, SetSignal]]:
+    """Outputs that are set: the first move that is driven behind that, and the last one before."""
+    index = -1
+    for statement in program.statements:
+        if isinstance(statement, Move):
+            index += 1
+            for event in statement.events:
+                action = words.read(words.event(event.text))
+                if isinstance(action, SetSignal):
+                    begins = event.anchor is EventAnchor.START and event.distance == event.time == 0
+                    yield index, index - begins, action
+        elif isinstance(statement, Opaque):
+            action = words.read(statement.text)
+            if isinstance(action, SetSignal):
+                yield index + 1, index, action
+
+
+def _is_work(moves: Sequence[Move]) -> bool:
+    """Whether moves are such as a process is driven with, and pass a point on their way."""
+    return (
+        any(not isinstance(move.zone, Fine) for move in moves[:-1])
+        and not any(isinstance(move, MoveJ) for move in moves)
+        and all(
+            (one.speed.tcp, one.speed.reorientation) == (two.speed.tcp, two.speed.reorientation)
+            and one.tool == two.tool
+            for one, two in pairwise(moves)
+        )
+    )
