@@ -103,8 +103,8 @@ class Data:
     def operand(self, operand: Operand) -> tuple[Numbers, MovePart]:
         """The numbers of a part of a move, and where they stand."""
         if operand.point is None:
-            units = tuple(self._unit(one) for one in operand.numbers)
-            numbers = Numbers.of(map(self.values.number, operand.numbers), units)
+            kind = operand.kind or tuple(map(self._unit, operand.numbers))
+            numbers = Numbers.of(map(self.values.number, operand.numbers), kind)
             sources = tuple(map(self.values.source_of, operand.numbers)) or (
                 Literal(operand.span, None, ()),
             )

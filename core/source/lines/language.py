@@ -23,17 +23,16 @@ from ..text.numerals import nine_decimals
 from ..write.options import OpaqueStyle, PatcherOptions, WriterOptions
 from ..write.refusals import check_said
 from ..write.statements import lines_of_statements
+from .driving import MotionGrammar
 from .files import with_called
 from .interpreter import run_lines
-from .motions import MotionWords
 from .patcher import patch_lines
-from .positions import PositionForm
-from .program import Grammar, LineProgram, mostly_said, plain_lines, read_lines
+from .program import LineProgram, mostly_said, plain_lines, read_lines
 from .statements import Line
 
 
 class LineWriter(Protocol):
-    """Writes one program; see `LineLanguage.writer`."""
+    """Writes one program; a new one for each."""
 
     def move(self, move: Move) -> Iterable[str]:
         """The lines of a move, and what must be said before it."""
@@ -55,8 +54,8 @@ class LineLanguage:
         name: for messages.
         suffix: of the files that it writes.
         dialect: what it has words for.
-        positions: how it says positions.
-        motion: how its motions say speeds and zones; None if settings do.
+        grammar: what a line of one file means.
+        writer: writes one program.
         trailing: what begins a comment behind a statement; ``""`` for none.
         called: in a text, names of the programs that it calls, whose files stand beside; None for
             programs in one file.
@@ -66,17 +65,13 @@ class LineLanguage:
     name: str
     suffix: str
     dialect: Dialect
-    positions: PositionForm
-    motion: MotionWords | None = None
+    grammar: type[MotionGrammar]
+    writer: type[LineWriter]
     trailing: str = ""
     called: re.Pattern[str] | None = None
     always: tuple[str, ...] = ()
 
     # ------------------------------------------------------------ what a language says
-
-    def grammar(self) -> Grammar:
-        """What a line of one file means; a new one for each file."""
-        raise NotImplementedError
 
     def lines(self, source: SourceText) -> Iterable[Line]:
         """What of a text is one statement each."""
@@ -85,10 +80,6 @@ class LineLanguage:
     def program(self, text: str, file: str) -> LineProgram:
         """The routines, points and data of one file."""
         return read_lines(text, file, self.grammar(), self.name, self.lines)
-
-    def writer(self, options: WriterOptions) -> LineWriter:
-        """What writes one program."""
-        raise NotImplementedError
 
     def comment(self, text: str) -> Iterator[str]:
         """Lines of comment."""
@@ -104,17 +95,17 @@ class LineLanguage:
 
     def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
         """The numbers of a speed or zone, in the order in which a move has them."""
-        settings = self.grammar().settings
-        if self.motion is not None and not settings.set(kind):
-            return self.motion.numbers(part, move)
+        words, settings = self.grammar.words, self.grammar.settings
+        if words is not None and not settings.set(kind):
+            return words.numbers(part, move)
         return settings.numbers(kind, part, move)
 
     def own(self, use: Use) -> Iterator[Edit]:
         """What is put at a move that gets numbers, or words, of its own."""
-        settings = self.grammar().settings
+        words, settings = self.grammar.words, self.grammar.settings
         target = isinstance(use.new, JointTarget | PoseTarget)
-        if self.motion is not None and (target or not settings.set(use.kind)):
-            yield from self.motion.own(use)
+        if words is not None and (target or not settings.set(use.kind)):
+            yield from words.own(use)
             return
         if target or not settings.set(use.kind):
             raise InputError("there is no number of its own to change: write the program anew")
@@ -124,7 +115,7 @@ class LineLanguage:
         """What literals must say that are no single number."""
         if isinstance(use.new, JointTarget | PoseTarget):
             return {}
-        return self.grammar().settings.rewritten(use, text)
+        return self.grammar.settings.rewritten(use, text)
 
     # --------------------------------------------------------------------- its parts
 
@@ -173,7 +164,7 @@ class LineLanguage:
         Args:
             writer: that writes it; None for the language's own.
         """
-        writer = writer or self.writer(options)
+        writer = writer or self.writer()
 
         def move(move: Move, *_: object) -> Iterable[str]:
             if options.opaque is OpaqueStyle.COMMENT:
@@ -207,7 +198,7 @@ class LineLanguage:
         """
         check_said(replace(move, events=()), self.dialect, self.name)
         if isinstance(part, JointTarget | PoseTarget):
-            return self.positions.numbers(part)
+            return self.grammar.form.numbers(part)
         return self.settings_of(kind, part, move)
 
     def _read(self, files: Files, main: str, options: ReadOptions) -> Program:

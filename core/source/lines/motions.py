@@ -29,6 +29,9 @@ class MotionWords:
         unstated: what stands for a speed of which a move states nothing.
         speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
         number: a number as a motion has it.
+        share: how a share of acceleration is written, of its ``number`` in %.
+        motion: a whole motion: of its ``kind`` (J, L, C), ``points``, ``speed``, ``zone`` and
+            ``share``.
     """
 
     joint: Units
@@ -39,6 +42,8 @@ class MotionWords:
     speed: str = "{number}{unit}"
     zone: str = "{word}{numbers}"
     number: Callable[[float], str] = nine_decimals
+    share: str = ""
+    motion: str = "MOVE{kind} {points} {speed} {zone} {share}"
 
     # ----------------------------------------------------------------------- reading
 
@@ -111,6 +116,18 @@ class MotionWords:
             return (1.0 + part.kind.sizes.index(part.size),)
         size = part.size / part.kind.unit
         return (size,) if part.ratio == 1.0 else (size, size * part.ratio)
+
+    def text(self, move: Move, *points: str) -> str:
+        """A motion to its points, as they are called."""
+        share = move.speed.acceleration_override
+        said = self.motion.format(
+            kind=type(move).__name__[-1],
+            points=" ".join(points),
+            speed=self.speed_text(move),
+            zone=self.zone_text(move),
+            share="" if share == 1.0 else self.share.format(number=self.number(100 * share)),
+        )
+        return " ".join(said.split())
 
     def speed_text(self, move: Move) -> str:
         """The words of a move's speed, without its share of acceleration."""

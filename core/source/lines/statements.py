@@ -113,11 +113,13 @@ class Operand:
         numbers: one expression each; empty if it is a point. A datum stands for what it was set
             to: a register, a setting (`core.source.lines.settings`).
         point: the point.
+        kind: of a position that is no point, what it is beside its numbers.
     """
 
     span: Span
     numbers: tuple[Expression, ...] = ()
     point: Datum | None = None
+    kind: Any = None
 
 
 Build = Callable[[Numbers, Numbers, Numbers, Numbers, Situation], Move]

@@ -8,15 +8,17 @@ from dataclasses import replace
 from typing import ClassVar
 
 from flyby.core.errors import InputError
+from flyby.core.source.lines.driving import MotionGrammar, Placed
 from flyby.core.source.lines.expressions import Datum, Number, Spelling, parse
-from flyby.core.source.lines.forms import FormGrammar, Found
-from flyby.core.source.lines.moves import ArcPoints
+from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.postures import PostureLabel
 from flyby.core.source.lines.program import Said
-from flyby.core.source.lines.statements import Line, NumberedPoint
+from flyby.core.source.lines.statements import Line, NumberedPoint, Numbers, Situation
 from flyby.core.source.text.files import SourceText
 
-from .moves import MOTION_LINE, Place, drive
+from .moves import MOTION, OPTION, Place, events, moved
+from .words import FRAMES, XYZ
+from .words import MOTION as MOTION_WORDS
 
 _SECTION = re.compile(r"^[ \t]*/(PROG|ATTR|APPL|MN|POS|END)\b[^\r\n]*", re.M | re.I)
 _STATEMENT = re.compile(
@@ -75,9 +77,13 @@ def _instructions(source: SourceText, at: int, end: int) -> Iterator[Line]:
             yield Line(source, start, start + len(found["text"].rstrip()))
 
 
-class Grammar(FormGrammar):
+class Grammar(MotionGrammar):
     """One program's lines."""
 
+    form = XYZ
+    words = MOTION_WORDS
+    chained = frozenset({"A"})
+    override = "OVERRIDE"
     registers = frozenset(
         {"R", "AR", "UFRAME_NUM", "UTOOL_NUM", "OVERRIDE", "OFFSET", "TOOL_OFFSET", *_WHOLE}
     )
@@ -92,7 +98,7 @@ class Grammar(FormGrammar):
     forms: ClassVar = {
         "routine": r"/PROG\s+(?P<name>\S+).*",
         "position": _POSITION.pattern,
-        "motion": MOTION_LINE,
+        "motion": MOTION,
         "label": r"LBL\[\s*(?P<name>\d+)\s*\]",
         "jump": r"JMP\s+LBL\[\s*(?P<name>\d+)\s*\]",
         "call": r"CALL\s+(?P<name>[\w-]+)\s*(?:\((?P<arguments>.*)\))?",
@@ -118,18 +124,16 @@ class Grammar(FormGrammar):
         "assigned": r"(?P<target>[A-Z]+\[[^=]*?\])\s*=\s*(?P<value>[^=].*)",
     }
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._arc: ArcPoints[Found] = ArcPoints()
-
     def motion(self, line: Line, found: Found) -> Said:
-        """Of arcs by ``A`` the first goes to where they begin, the next through, then to an end."""
-        kind = found["kind"].upper()
-        if kind != "A":
-            self._arc.end()
-            return drive(self, line, found, kind)
-        kind, middle = self._arc.add(found)
-        return drive(self, line, found, kind, middle) if kind else None
+        """A motion with its options."""
+        given = self.options(line, found, "options", OPTION)
+        return self.drive(line, found, moved(line, given), events(line, given))
+
+    def placed(self, numbers: Numbers, now: Situation) -> Placed:
+        """In the frames of the position, or those that are set."""
+        place = numbers.kind or Place()
+        goal = XYZ.target(numbers[:6], place.joints, place.configuration)
+        return Placed(goal, *FRAMES.both(place.tool, place.frame, now))
 
     def position(self, line: Line, found: Found) -> Said:
         """``P[1]{GP1: UF : 0, UT : 1, CONFIG : 'N U T, 0, 0, 0', X = 500.000 mm, …};``"""

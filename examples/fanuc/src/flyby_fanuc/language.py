@@ -14,13 +14,11 @@ from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.program import LineProgram
 from flyby.core.source.lines.statements import Body, Line, Numbers
 from flyby.core.source.text.files import SourceText
-from flyby.core.source.write.options import WriterOptions
 
 from .dialect import TP
 from .grammar import Grammar, lines
 from .moves import Place
 from .record import USUAL_PERIOD, record, steps
-from .words import MOTION, XYZ
 from .writer import Writer, program_name
 
 _VARIABLES = {
@@ -45,14 +43,10 @@ class Language(LineLanguage):
     name = "TP"
     suffix = ".ls"
     dialect = TP
-    positions = XYZ
-    motion = MOTION
+    grammar = Grammar
+    writer = Writer
     called = re.compile(r"\b(?:CALL|RUN)\s+([\w-]+)", re.IGNORECASE)
     always = tuple(_VARIABLES)
-
-    def grammar(self) -> Grammar:
-        """See `LineLanguage`."""
-        return Grammar()
 
     def lines(self, source: SourceText) -> Iterable[Line]:
         """See `LineLanguage`."""
@@ -68,10 +62,6 @@ class Language(LineLanguage):
     def file_name(self, program: Program) -> str:
         """See `LineLanguage`."""
         return program_name(program.name)
-
-    def writer(self, options: WriterOptions) -> Writer:
-        """See `LineLanguage`."""
-        return Writer()
 
     def comment(self, text: str) -> Iterator[str]:
         """See `LineLanguage`."""

@@ -8,32 +8,34 @@ from dataclasses import dataclass, replace
 
 from flyby.core.errors import InputError
 from flyby.core.program.event import Event
-from flyby.core.program.move import Move
 from flyby.core.program.target import JointTarget, PoseTarget, Target
+from flyby.core.source.lines.driving import Moved, Placed
 from flyby.core.source.lines.expressions import Datum, parse
-from flyby.core.source.lines.forms import FormGrammar, Found
-from flyby.core.source.lines.moves import counted_on, made_move
+from flyby.core.source.lines.moves import counted_on
 from flyby.core.source.lines.postures import PostureLabel
-from flyby.core.source.lines.statements import Drive, Line, Numbers, Situation
+from flyby.core.source.lines.statements import Line, Situation
 from flyby.core.spatial.pose import Pose
 
-from .words import FRAMES, MOTION, XYZ
+from .words import XYZ
 
 _POINT = r"PR?\[(?:[^\[\]]|\[[^\[\]]*\])*\]"
 _AMOUNT = r"(?:[\d.]+|A?R\[[^\[\]]*\])"
-MOTION_LINE = (
-    rf"(?P<kind>[JLCA])\s+(?P<point>{_POINT})(?:\s+(?P<end>{_POINT}))?\s+"
+MOTION = (
+    rf"(?P<kind>[JLCA])\s+(?:(?P<via>{_POINT})\s+(?=PR?\[))?(?P<point>{_POINT})\s+"
     rf"(?P<pace>(?P<speed>{_AMOUNT})\s*(?P<unit>%|mm/sec|cm/min|inch/min|deg/sec|msec|sec)"
-    rf"|max_speed)\s+(?P<zone>FINE|(?P<word>CNT)\s*(?P<cnt>{_AMOUNT})"
-    r"|CR\s*(?P<cr>[\d.]+)(?:\s*,\s*(?P<behind>[\d.]+))?)(?P<options>(?:\s.*)?)"
+    rf"|max_speed)\s+(?P<zone>FINE|(?P<word>CNT(?!\s*[\d.]+\s*,)|CR)\s*(?P<size>{_AMOUNT})"
+    rf"(?:\s*,\s*(?P<behind>[\d.]+))?)(?=(?:.*?\sACC\s*(?P<share>{_AMOUNT}))?)"
+    r"(?P<options>(?:\s.*)?)"
 )
-_OPTION = re.compile(
-    rf"\s*(?:ACC\s*(?P<acc>{_AMOUNT})|(?P<inc>INC\b)"
+OPTION = re.compile(
+    rf"\s*(?:ACC\s*{_AMOUNT}|(?P<inc>INC\b)"
     rf"|(?P<tool>Tool_)?(?P<offset>Offset)(?:\s*,\s*(?P<register>{_POINT}))?"
     r"|(?P<when>TB|TA|DB)\s*(?P<amount>[\d.]+)\s*(?:sec|mm)\s*,\s*(?P<action>.*?)\s*$"
     r"|(?P<plain>PTH|BREAK|COORD|MROT|RTCP|Skip\s*,\s*LBL\[[^\]]*\]|(?:Ind\.)?EV\s*\d+%))",
     re.IGNORECASE,
 )
+Given = Mapping[str, tuple[int, int]]
+"""Where the parts of a motion's options stand in the text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,58 +54,25 @@ class Place:
     configuration: PostureLabel | None = None
 
 
-def drive(
-    grammar: FormGrammar, line: Line, found: Found, kind: str, middle: Found | None = None
-) -> Drive:
-    """A motion instruction.
-
-    Args:
-        kind: ``J``, ``L`` or ``C``.
-        middle: the ``A`` that is driven through on the way.
-    """
-    if middle is None and (kind == "C") != bool(found["end"]):
-        raise InputError("C has two positions, J, L and A have one")
-    given = grammar.options(line, found, "options", _OPTION)
-    speed = grammar.numbers_at(line, found, "pace", "speed")
-    if "acc" in given:
-        speed = replace(speed, numbers=(*speed.numbers, parse(line.source, *given["acc"])))
+def moved(line: Line, given: Given) -> Moved:
+    """What ``INC`` and offsets make of where a motion goes."""
     register = parse(line.source, *given["register"]) if "register" in given else None
-    events = _events(line, given)
 
-    def build(
-        target: Numbers, speeds: Numbers, sizes: Numbers, via: Numbers, now: Situation
-    ) -> Move:
-        place = target.kind or Place()
-        frame, tool = (
-            int(now.setting(word, 0.0)) if number is None else number
-            for word, number in (("UFRAME_NUM", place.frame), ("UTOOL_NUM", place.tool))
-        )
-        held, user = FRAMES.tool_of(tool, now), FRAMES.work_object_of(frame, now)
-        goes: Target = XYZ.target(target[:6], place.joints, place.configuration)
+    def changed(placed: Placed, now: Situation) -> Placed:
+        goal = placed.target
+        if "inc" in given or "offset" in given:
+            now.computed("target")
         if "inc" in given:
-            now.computed("target")
-            goes = counted_on(goes, now.before, held, user)
+            goal = counted_on(goal, now.before, placed.tool, placed.work_object)
         if "offset" in given:
-            now.computed("target")
-            goes = _shifted(goes, _offset(register, "tool" in given, now), "tool" in given)
-        through = XYZ.target(via, False, (via.kind or Place()).configuration) if via else None
-        scale = now.setting("OVERRIDE", 100.0) / 100
-        pace = MOTION.speed_of(kind, found["unit"], speeds, "acc" in given, scale)
-        zone = MOTION.zone_of(found["word"] or "CR", sizes)
-        return made_move(kind, goes, pace, zone, held, user, through, events)
+            goal = _shifted(goal, _offset(register, "tool" in given, now), "tool" in given)
+        return replace(placed, target=goal)
 
-    through = middle or (found if found["end"] else None)
-    return Drive(
-        line.span,
-        grammar.point_at(line, found, "end" if found["end"] else "point"),
-        speed,
-        grammar.numbers_at(line, found, "zone", "cnt", "cr", "behind"),
-        build,
-        None if through is None else grammar.point_at(line, through, "point"),
-    )
+    return changed
 
 
-def _events(line: Line, given: Mapping[str, tuple[int, int]]) -> tuple[Event, ...]:
+def events(line: Line, given: Given) -> tuple[Event, ...]:
+    """``TB`` and ``TA`` before and after the end, s; ``DB`` before it, mm."""
     if "when" not in given:
         return ()
     when, amount, action = (

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from flyby.core.hookspec import VendorRegister, hookimpl
-from flyby.core.vendor import Vendor, lazy_motion, lazy_robots
+from flyby.core.plugins.speaking import speaking
+from flyby.core.vendor import Vendor
 
-from .dialect import TP
 from .language import Language
 from .words import LETTERS
 
@@ -16,22 +16,15 @@ DATA = Path(__file__).parent / "data"
 
 def fanuc() -> Vendor:
     """The vendor."""
-    language = Language()
-    return Vendor(
-        name="fanuc",
-        robots=lazy_robots(DATA.glob("robots/*.toml")),
-        motion=lazy_motion(DATA / "motion.toml"),
+    return speaking(
+        Language(),
+        "fanuc",
+        DATA,
         label=LETTERS.label,
-        reader=language,
-        writer=language,
-        patcher=language,
-        recorder=language,
-        suffixes=(".ls",),
         companions={
             ".va": "the controller's variables: name the program (.ls) beside them",
             ".tp": "a program in binary form: save it as text (.ls)",
         },
-        speaks=TP,
     )
 
 

@@ -7,7 +7,7 @@ import math
 from flyby.core.dialect import Orientation
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.frames import FrameRegisters
+from flyby.core.source.lines.driving import FrameRegisters
 from flyby.core.source.lines.motions import MotionWords
 from flyby.core.source.lines.positions import PositionForm
 from flyby.core.source.lines.postures import PostureLetters
@@ -28,9 +28,13 @@ MOTION = MotionWords(
     },
     zones={"CNT": CNT, "CR": CR},
     unstated="max_speed",
+    share="ACC{number}",
+    motion="{kind} {points} {speed} {zone} {share}",
 )
 XYZ = PositionForm(Orientation.EULER_ZYX, last_first=True)
-FRAMES = FrameRegisters(XYZ, "UTOOL", "UFRAME", "framevar.va of the controller's backup")
+FRAMES = FrameRegisters(
+    XYZ, "UTOOL", "UFRAME", "framevar.va of the controller's backup", ("UTOOL_NUM", "UFRAME_NUM")
+)
 LETTERS = PostureLetters(wrist="NF", elbow="UD", shoulder="TB", turning=(3, 4, 5))
 """``CONFIG : 'N U T, 0, 0, 0'``: no flip is J5 below zero; the order of the turns is that of
 FANUC's remote motion interface (``Turn4, Turn5, Turn6``)."""

@@ -98,12 +98,9 @@ class Writer:
             self._in = frame, tool
             yield f"  UFRAME_NUM={frame}"
             yield f"  UTOOL_NUM={tool}"
-        kind, goals = said(move)
-        points = " ".join(f"P[{self._positions.of(g, str(frame), str(tool))}]" for g in goals)
-        share = move.speed.acceleration_override
-        options = f" ACC{nine_decimals(100 * share)}" if share != 1.0 else ""
-        options += "".join(map(_event, move.events))
-        yield f"{kind} {points} {MOTION.speed_text(move)} {MOTION.zone_text(move)}{options}"
+        _, goals = said(move)
+        points = (f"P[{self._positions.of(g, str(frame), str(tool))}]" for g in goals)
+        yield MOTION.text(move, *points) + "".join(map(_event, move.events))
 
     def _number(self, word: str, numbering: Numbering[Pose], pose: Pose, name: str) -> int:
         """The number of a frame or tool; a new one is set before the first move."""

@@ -16,28 +16,18 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.expressions import Datum, Number, Operation, Spelling, parse_all
-from flyby.core.source.lines.forms import FormGrammar, Found
-from flyby.core.source.lines.frames import FrameRegisters
+from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Placed
+from flyby.core.source.lines.expressions import Number, Operation, Spelling
+from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.motions import MotionWords
-from flyby.core.source.lines.moves import ArcPoints, made_move, said
+from flyby.core.source.lines.moves import said
 from flyby.core.source.lines.positions import PositionForm
 from flyby.core.source.lines.program import Said
 from flyby.core.source.lines.signals import Signals
-from flyby.core.source.lines.statements import (
-    Assign,
-    Build,
-    Drive,
-    Line,
-    NumberedPoint,
-    Numbers,
-    Operand,
-    Situation,
-)
+from flyby.core.source.lines.statements import Assign, Line, Numbers, Situation
 from flyby.core.source.text.numerals import nine_decimals
 from flyby.core.source.write.numbering import PointNumbers
-from flyby.core.source.write.options import WriterOptions
 
 LEVELS = (0.0125, 0.025, 0.05, 0.1)
 """m, of PL=1 to PL=4 as operator's manuals of the DX controllers have them."""
@@ -49,6 +39,8 @@ MOTION = MotionWords(
     stop=None,
     speed="{unit}={number}",
     zone="{word}={numbers}",
+    share="ACC={number} DEC={number}",
+    motion="MOV{kind} {points} {speed} {zone} {share}",
 )
 XYZ = PositionForm(Orientation.EULER_ZYX, last_first=True)
 FRAMES = FrameRegisters(XYZ, "TOOL")
@@ -62,23 +54,26 @@ class Place:
     tool: int
 
 
-class Grammar(FormGrammar):
-    """What a line says; it knows the type of the positions before, and how far an arc has come."""
+class Grammar(MotionGrammar):
+    """What a line says; it knows the type of the positions before."""
 
+    form = XYZ
+    words = MOTION
+    chained = frozenset({"C"})
     registers = frozenset("BIDR")
     outputs = frozenset({"OT"})
     vectors: ClassVar = {"TOOL": 6, "PULSE": 6}
-    spelling = Spelling(datum=re.compile(r"(?P<word>[BIDR]|IN|OT)#?\(?(?P<index>\d+)\)?"))
+    spelling = Spelling(datum=re.compile(r"(?P<word>[BIDRCP]|IN|OT)#?\(?(?P<index>\d+)\)?"))
     driving = re.compile("MOV")
     stopping = frozenset({"PAUSE"})
     forms: ClassVar = {
         "routine": r"//NAME (?P<name>\S+).*",
         "head": r"/+(?P<word>\w+) ?(?P<value>.*)",
         "nothing": r"'.*|NOP",
-        "position": r"(?P<name>[CP])(?P<number>\d+)=(?P<values>[-+.\d, ]+)",
+        "point": r"(?P<name>[CP]\d+)=(?P<values>[-+.\d, ]+)",
         "motion": r"MOV(?P<kind>[JLC])\s+(?P<point>[CP]\d+)"
         r"(?:\s+(?P<pace>(?P<unit>VJ|V|VR)=(?P<speed>[\d.]+)))?"
-        r"(?:\s+(?P<zone>PL=(?P<level>\d)))?(?:\s+ACC=(?P<acc>\d+))?(?:\s+DEC=(?P=acc))?\s*",
+        r"(?:\s+(?P<zone>PL=(?P<size>\d)))?(?:\s+ACC=(?P<share>\d+))?(?:\s+DEC=(?P=share))?\s*",
         "when": r"(?P<action>(?!MOV).*?)\s+IF\s+(?P<condition>.*)",
         "label": r"\*(?P<name>\S+)",
         "jump": r"JUMP\s+\*(?P<name>\S+)",
@@ -93,8 +88,7 @@ class Grammar(FormGrammar):
 
     def __init__(self) -> None:
         super().__init__()
-        self._type, self._tool, self._before = "", 0, ""
-        self._arc: ArcPoints[Operand] = ArcPoints()
+        self._type, self._tool = "", 0
 
     def head(self, line: Line, found: Found) -> Said:
         """What describes the job, or the positions that follow."""
@@ -109,56 +103,23 @@ class Grammar(FormGrammar):
         word = {"ADD": "+", "INC": "+", "MUL": "*", "DIV": "/"}.get(sign, "-")
         return Assign(line.span, target, Operation(line.span, word, (target, value)))
 
-    def position(self, line: Line, found: Found) -> Said:
-        """``C00001=400.000,0.000,…``"""
-        name = Datum(line.span, found["name"], Number(line.span, float(found["number"])))
-        numbers = parse_all(line.source, *found.span("values"))
-        if len(numbers) != 6:
-            raise InputError("a position has six numbers")
-        return NumberedPoint(line.span, name, numbers, Place(self._type, self._tool))
+    def kind_of(self, found: Found) -> Place:
+        """See `MotionGrammar`."""
+        return Place(self._type, self._tool)
 
-    def motion(self, line: Line, found: Found) -> Said:
-        """``MOVC``: the first goes to where the arc begins, the next through, then to its end."""
-        span = line.source.span(*found.span("point"))
-        number = Number(span, float(found["point"][1:]))
-        point = Operand(span, point=Datum(span, found["point"][0], number))
-        before, self._before = self._before, found["point"]
-        kind, middle = found["kind"], None
-        if kind != "C":
-            self._arc.end()
-        elif before == found["point"] and self._arc.open:
-            self._arc.begin()
-            return None
-        else:
-            kind, middle = self._arc.add(point)
-        if not kind:
-            return None
-        pace = self.numbers_at(line, found, "pace", "speed", "acc")
-        zone = self.numbers_at(line, found, "zone", "level")
-        return Drive(line.span, point, pace, zone, _build(kind, found), middle)
+    def placed(self, numbers: Numbers, now: Situation) -> Placed:
+        """Of pulses, in joint values or in the base."""
+        place = numbers.kind
+        if place.type not in ("PULSE", "ANGLE", "BASE", "ROBOT"):
+            raise InputError(f"positions of type {place.type or '(none)'} are not read: use BASE")
+        if place.type == "PULSE":
+            now.computed("target")
+            numbers = _degrees(numbers, now)
+        goal = XYZ.target(numbers, place.type in ("PULSE", "ANGLE"))
+        return Placed(goal, FRAMES.tool_of(place.tool, now))
 
 
-def _build(kind: str, found: Found) -> Build:
-    def build(target: Numbers, speed: Numbers, zone: Numbers, via: Numbers, now: Situation) -> Move:
-        goal, through = _target(target, now), _target(via, now) if kind == "C" else None
-        pace = MOTION.speed_of(kind, found["unit"], speed, bool(found["acc"]))
-        tool = FRAMES.tool_of(target.kind.tool, now)
-        return made_move(kind, goal, pace, MOTION.zone_of("PL", zone), tool, via=through)
-
-    return build
-
-
-def _target(numbers: Numbers, now: Situation) -> Target:
-    place = numbers.kind
-    if place.type == "PULSE":
-        now.computed("target")
-        return XYZ.target(_degrees(numbers, now), True)
-    if place.type not in ("ANGLE", "BASE", "ROBOT"):
-        raise InputError(f"positions of type {place.type or '(none)'} are not read: use BASE")
-    return XYZ.target(numbers, place.type == "ANGLE")
-
-
-def _degrees(pulses: Numbers, now: Situation) -> list[float]:
+def _degrees(pulses: Numbers, now: Situation) -> Numbers:
     """Of pulses; how many a degree has stands in the controller's parameters."""
     try:
         rates = now.vector("PULSE", 1)
@@ -167,7 +128,7 @@ def _degrees(pulses: Numbers, now: Situation) -> list[float]:
             "how many pulses a degree has is not known: answer PULSE[1,1] to PULSE[1,6] in the "
             "table [values], or convert the job's positions (BASE)"
         ) from None
-    return [a / b for a, b in zip(pulses, rates, strict=True)]
+    return Numbers.of(a / b for a, b in zip(pulses, rates, strict=True))
 
 
 _LINE_WORDS = MoveWords(
@@ -221,9 +182,6 @@ class Writer:
 
     def move(self, move: Move) -> Iterator[str]:
         """The instructions of a move; without a PL the robot is taken to stop."""
-        words = f"{MOTION.speed_text(move)} {MOTION.zone_text(move)}".strip()
-        share = nine_decimals(100 * move.speed.acceleration_override)
-        words += "" if share == "100" else f" ACC={share} DEC={share}"
         kind, targets = said(move)
         numbers = [self._positions.of(target) for target in targets]
         if kind == "C":
@@ -231,7 +189,7 @@ class Writer:
                 raise InputError("an arc begins where a motion before it ends: state a start")
             numbers.insert(0, self._last)
         self._last = numbers[-1]
-        yield from (f"MOV{kind} C{number:05} {words}" for number in numbers)
+        yield from (MOTION.text(move, f"C{number:05}") for number in numbers)
 
     def wait(self, wait: Wait) -> str:
         """The instruction of a wait."""
@@ -251,17 +209,9 @@ class Language(LineLanguage):
     name = "JBI"
     suffix = ".jbi"
     dialect = SPEAKS
-    positions = XYZ
-    motion = MOTION
+    grammar = Grammar
+    writer = Writer
     called = re.compile(r"\bCALL\s+JOB:([\w-]+)")
-
-    def grammar(self) -> Grammar:
-        """See `LineLanguage`."""
-        return Grammar()
-
-    def writer(self, options: WriterOptions) -> Writer:
-        """See `LineLanguage`."""
-        return Writer()
 
     def file_name(self, program: Program) -> str:
         """A name of 32 signs at most."""

@@ -5,27 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 from flyby.core.hookspec import VendorRegister, hookimpl
-from flyby.core.vendor import Vendor, lazy_motion, lazy_robots
+from flyby.core.plugins.speaking import speaking
+from flyby.core.vendor import Vendor
 
-from .language import SPEAKS, Language
+from .language import Language
 
 DATA = Path(__file__).parent / "data"
 
 
 def vendor() -> Vendor:
     """The vendor."""
-    language = Language()
-    return Vendor(
-        name="yaskawa",
-        robots=lazy_robots(DATA.glob("robots/*.toml")),
-        motion=lazy_motion(DATA / "motion.toml"),
-        label=lambda robot, q: None,
-        reader=language,
-        writer=language,
-        patcher=language,
-        suffixes=(".jbi",),
-        speaks=SPEAKS,
-    )
+    return speaking(Language(), "yaskawa", DATA)
 
 
 @hookimpl

@@ -13,6 +13,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
+from flyby.core.source.lines.driving import MotionGrammar
 from flyby.core.source.lines.forms import FormGrammar, Found
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.positions import PositionForm
@@ -24,7 +25,8 @@ WORDS = MoveWords((Radius,), frozenset({"joint_fraction"}))
 ROBOT: Any = None
 
 
-class Grammar(FormGrammar):
+class Grammar(MotionGrammar):
+    form = PositionForm(Orientation.EULER_ZYX)
     forms: ClassVar = {
         "missing": r"A\s+(?P<kind>\w+)",
         "unknown.word": r"B (?P<word>\w+)",
@@ -58,14 +60,10 @@ class Writer:
 
 
 class Language(LineLanguage):
-    name, suffix, positions = "ODD", ".odd", PositionForm(Orientation.EULER_ZYX)
+    name, suffix = "ODD", ".odd"
     dialect = Dialect(WORDS, WORDS, WORDS, "joint_fraction", "; ")
 
-    def grammar(self) -> FormGrammar:
-        return Grammar()
-
-    def writer(self, options: Any) -> Writer:
-        return Writer()
+    grammar, writer = Grammar, Writer
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,9 @@ from flyby.core.program.program import Program
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.lines.amounts import Amount
+from flyby.core.source.lines.driving import MotionGrammar
 from flyby.core.source.lines.expressions import Operation, Spelling, Truth, parse, parse_all
-from flyby.core.source.lines.forms import FormGrammar, Found
+from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.moves import made_move
 from flyby.core.source.lines.positions import PositionForm
@@ -49,8 +50,10 @@ WORDS = MoveWords((Radius,), SPEEDS, configurations=False)
 FORM = PositionForm(Orientation.EULER_ZYZ)
 
 
-class Grammar(FormGrammar):
+class Grammar(MotionGrammar):
     """Named points, moves without a number of their own, all kinds of loops."""
+
+    form = FORM
 
     registers = frozenset({"N", "X"})
     settings = HELD
@@ -103,10 +106,7 @@ class Language(LineLanguage):
     name = "HOLD"
     suffix = ".hold"
     dialect = Dialect(WORDS, WORDS, WORDS, "joint_fraction", "; ")
-    positions = FORM
-
-    def grammar(self) -> Grammar:
-        return Grammar()
+    grammar = Grammar
 
 
 POINTS = "POINT a = 500, 0, 300, 0, 180, 0\nPOINT b = 500, 50+50, 300, 0, 180, 0\n"
@@ -237,8 +237,7 @@ def test_nobody_knows_a_setting_that_is_not_said() -> None:
         settings = unknown
 
     class Other(Language):
-        def grammar(self) -> Grammar:
-            return Unset()
+        grammar = Unset
 
     with pytest.raises(SourceError, match="SPEED"):
         Other().read(POINTS + "LMOVE a\n", "job.hold", ReadOptions())

@@ -13,20 +13,15 @@ from hypothesis import strategies as st
 
 from flyby.core.dialect import Dialect, MoveWords, Orientation
 from flyby.core.errors import FlybyError, InputError, SourceError
-from flyby.core.program.move import Move
 from flyby.core.program.program import Program
 from flyby.core.program.zone import FINE, VendorZone, Zone, ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.expressions import Spelling, parse_all
-from flyby.core.source.lines.forms import FormGrammar, Found
+from flyby.core.source.lines.driving import MotionGrammar
+from flyby.core.source.lines.expressions import Spelling
 from flyby.core.source.lines.language import LineLanguage
-from flyby.core.source.lines.moves import made_move
 from flyby.core.source.lines.positions import PositionForm
-from flyby.core.source.lines.program import Said
 from flyby.core.source.lines.settings import Setting, Settings
-from flyby.core.source.lines.statements import Drive, Line, NumberedPoint, Numbers, Situation
 from flyby.core.source.patch.edits import alike
-from flyby.core.source.patch.uses import UseKind
 from flyby.core.source.reading import ReadOptions
 
 NEAR = ZoneKind("CNT", None, largest=0.5, unit=1e-3, step=1e-3)
@@ -58,40 +53,22 @@ ROBOT: Any = None
 
 
 def language(held: Settings) -> LineLanguage:
-    class Grammar(FormGrammar):
+    class Grammar(MotionGrammar):
+        form = FORM
         registers = frozenset({"X"})
         settings = held
         spelling = Spelling(names=True)
         driving = re.compile("[JL]MOVE")
         forms: ClassVar = {
             "motion": r"(?P<kind>[JL])MOVE\s+(?P<point>\w+)",
-            "point": r"POINT\s+(?P<name>\w+)\s*=\s*(?P<numbers>.*)",
+            "point": r"POINT\s+(?P<name>\w+)\s*=\s*(?P<values>.*)",
             "assigned": r"(?P<target>\w+)\s*=\s*(?P<value>[^=].*)",
         }
 
-        def motion(self, line: Line, found: Found) -> Said:
-            joint = found["kind"] == "J"
-
-            def build(
-                target: Numbers, speed: Numbers, zone: Numbers, via: Numbers, now: Situation
-            ) -> Move:
-                goal = FORM.target(target, False)
-                pace, near = held.speed(speed, joint), held.zone_of(zone, joint)
-                return made_move(found["kind"], goal, pace, near)
-
-            speed, zone = (held.operand(line, kind) for kind in (UseKind.SPEED, UseKind.ZONE))
-            return Drive(line.span, self.point_at(line, found, "point"), speed, zone, build)
-
-        def point(self, line: Line, found: Found) -> Said:
-            numbers = parse_all(line.source, *found.span("numbers"), self.spelling)
-            return NumberedPoint(line.span, self.datum(line, found, "name"), numbers)
-
     class Language(LineLanguage):
-        name, suffix, positions, trailing = "HOLD", ".hold", FORM, "'"
+        name, suffix, trailing = "HOLD", ".hold", "'"
         dialect = Dialect(WORDS, WORDS, WORDS, "joint_fraction", "' ")
-
-        def grammar(self) -> Grammar:
-            return Grammar()
+        grammar = Grammar
 
     return Language()
 

@@ -1,0 +1,229 @@
+"""Motions of the usual form: a language names the parts, and gets moves of them.
+
+Tools and frames that have numbers stand in registers (`FrameRegisters`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ...errors import InputError, SourceError
+from ...program.event import Event
+from ...program.move import Move
+from ...program.target import Target
+from ...program.tool import FLANGE, WORLD, Tool, WorkObject
+from ...spatial.pose import Pose
+from ..patch.uses import UseKind
+from .expressions import Expression, parse_all
+from .forms import FormGrammar, Found
+from .motions import MotionWords
+from .moves import ArcPoints, made_move
+from .positions import PositionForm
+from .program import Said
+from .statements import Drive, Line, NumberedPoint, Numbers, Operand, Situation
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """Where a motion goes, and with what."""
+
+    target: Target
+    tool: Tool = FLANGE
+    work_object: WorkObject = WORLD
+
+
+@dataclass(frozen=True)
+class FrameRegisters:
+    """The registers of a language; number 0 is the flange, and the robot's base.
+
+    Args:
+        form: of their numbers.
+        tool, frame: their words; ``""`` for none.
+        beside: the file that states them, to be put beside programs; ``""`` where there is none.
+        chosen: words of the settings that hold the numbers of those that a motion names none of.
+    """
+
+    form: PositionForm
+    tool: str
+    frame: str = ""
+    beside: str = ""
+    chosen: tuple[str, str] = ("", "")
+
+    def both(self, tool: int | None, frame: int | None, now: Situation) -> tuple[Tool, WorkObject]:
+        """The tool and the work object of their numbers; None for the ones that are set."""
+        numbers = (
+            int(now.setting(word, 0.0)) if number is None else number
+            for word, number in zip(self.chosen, (tool, frame), strict=True)
+        )
+        return self.tool_of(next(numbers), now), self.work_object_of(next(numbers), now)
+
+    def tool_of(self, number: int, now: Situation) -> Tool:
+        """The tool of a number."""
+        if not number:
+            return FLANGE
+        return Tool(f"{self.tool}[{number}]", self.pose(self.tool, number, now))
+
+    def work_object_of(self, number: int, now: Situation) -> WorkObject:
+        """The work object of a frame's number."""
+        if not number:
+            return WORLD
+        return WorkObject(f"{self.frame}[{number}]", user=self.pose(self.frame, number, now))
+
+    def pose(self, word: str, number: int, now: Situation) -> Pose:
+        """The pose that a register holds.
+
+        Raises:
+            InputError: nobody knows it.
+        """
+        try:
+            return self.form.pose(now.vector(word, number))
+        except SourceError:
+            offer = f"put {self.beside} beside the program, or " if self.beside else ""
+            raise InputError(
+                f"{word}[{number}] is not known: {offer}answer {word}[{number},1] to "
+                f"{word}[{number},6] in the table [values]"
+            ) from None
+
+
+Moved = Callable[[Placed, Situation], Placed]
+"""What an option of a motion makes of where it goes."""
+
+
+def _there(placed: Placed, now: Situation) -> Placed:
+    return placed
+
+
+class MotionGrammar(FormGrammar):
+    """A grammar whose motions and points are data, too.
+
+    The form ``motion`` has the groups ``kind`` and ``point``, and of these those that the language
+    has: ``via``, the auxiliary point of an arc; ``pace``, the words of a speed, in it its ``speed``
+    and ``unit``, and ``share``, one of acceleration in %; ``zone``, the words of a zone, in it its
+    ``word``, ``size`` and ``behind``. What settings set needs no group. The form ``point`` has
+    ``name``, ``values`` and ``kind``.
+
+    Attributes:
+        form: of positions.
+        words: of speeds and zones that motions state; None where settings say all.
+        kinds: ``J``, ``L`` or ``C`` by the ``kind`` of a motion; of others it is the last letter.
+        chained: kinds of arcs that have one point a line (`ArcPoints`).
+        joints: kinds of points that are joint values.
+        inline: a position at the motion itself, with the groups ``kind`` and ``values``.
+        count: numbers of a position.
+        override: word of the register that holds the speed override in %.
+    """
+
+    form: PositionForm
+    words: MotionWords | None = None
+    kinds: ClassVar[Mapping[str, str]] = {}
+    chained: frozenset[str] = frozenset()
+    joints: frozenset[str] = frozenset()
+    inline: re.Pattern[str] = re.compile(r"(?!)(?P<kind>)(?P<values>)")
+    count: int = 6
+    override: str = ""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._arc: ArcPoints[Operand] = ArcPoints()
+        self._before = ""
+
+    # ------------------------------------------------------- what a language may say otherwise
+
+    def placed(self, numbers: Numbers, now: Situation) -> Placed:
+        """Where the numbers of a point are; `numbers.kind` is that of the point."""
+        return Placed(self.form.target(numbers, numbers.kind in self.joints))
+
+    def kind_of(self, found: Found) -> object:
+        """What a point is beside its numbers."""
+        kind = found.groupdict().get("kind")
+        return None if kind is None else kind.upper()
+
+    # --------------------------------------------------------------------------- its forms
+
+    def point(self, line: Line, found: Found) -> NumberedPoint:
+        """A point's ``name`` and ``values``."""
+        name, numbers = self.datum(line, found, "name"), self._values(line, found)
+        return NumberedPoint(line.span, name, numbers, self.kind_of(found))
+
+    def motion(self, line: Line, found: Found) -> Said:
+        """A motion, of those on one line each; see `drive`."""
+        return self.drive(line, found)
+
+    def drive(
+        self, line: Line, found: Found, moved: Moved = _there, events: tuple[Event, ...] = ()
+    ) -> Drive | None:
+        """The motion of a line; None where an arc's other points are still to come.
+
+        Args:
+            moved: what its options make of where it goes.
+            events: on its way.
+        """
+        said, point = found["kind"].upper(), self.place(line, found, "point")
+        kind = self.kinds.get(said, said[-1])
+        given = found.groupdict()
+        via = self.place(line, found, "via") if given.get("via") else None
+        if said in self.chained:
+            kind, via = self._chained(found["point"], point)
+        else:
+            self._arc.end()
+            if (kind == "C") != (via is not None):
+                raise InputError("an arc has two points, other motions have one")
+        self._before = found["point"]
+        if not kind:
+            return None
+        speed = self._stated(line, found, UseKind.SPEED, "pace", "speed", "share")
+        zone = self._stated(line, found, UseKind.ZONE, "zone", "size", "behind")
+
+        def build(
+            target: Numbers, paces: Numbers, sizes: Numbers, through: Numbers, now: Situation
+        ) -> Move:
+            goal = moved(self.placed(target, now), now)
+            middle = self.placed(through, now).target if kind == "C" else None
+            settings, joint = self.settings, kind == "J"
+            if self.words is None or settings.set(UseKind.SPEED):
+                pace = settings.speed(paces, joint)
+            else:
+                scale = now.setting(self.override, 100.0) / 100 if self.override else 1.0
+                unit, share = given.get("unit", "") or "", bool(given.get("share"))
+                unit = None if not given.get("speed") else unit
+                pace = self.words.speed_of(kind, unit, paces, share, scale)
+            if self.words is None or settings.set(UseKind.ZONE):
+                near = settings.zone_of(sizes, joint)
+            else:
+                near = self.words.zone_of(given.get("word") or next(iter(self.words.zones)), sizes)
+            return made_move(
+                kind, goal.target, pace, near, goal.tool, goal.work_object, middle, events
+            )
+
+        return Drive(line.span, point, speed, zone, build, via)
+
+    def place(self, line: Line, found: Found, group: str) -> Operand:
+        """The position in a group, by name or by its numbers."""
+        own = self.inline.fullmatch(line.source.text, *found.span(group))
+        if own is None:
+            return self.point_at(line, found, group)
+        span = line.source.span(*found.span(group))
+        return Operand(span, self._values(line, own), kind=self.kind_of(own))
+
+    def _values(self, line: Line, found: Found) -> tuple[Expression, ...]:
+        numbers = parse_all(line.source, *found.span("values"), self.spelling)
+        if len(numbers) != self.count:
+            raise InputError(f"a position has {self.count} numbers, not {len(numbers)}")
+        return numbers
+
+    def _stated(self, line: Line, found: Found, kind: UseKind, *groups: str) -> Operand:
+        if self.words is None or self.settings.set(kind):
+            return self.settings.operand(line, kind)
+        whole, *numbers = (group for group in groups if group in found.re.groupindex)
+        return self.numbers_at(line, found, whole, *(numbers or [whole]))
+
+    def _chained(self, said: str, point: Operand) -> tuple[str, Operand | None]:
+        """How a point of an arc is driven to, and through what; where the robot stands already, the
+        arc begins."""
+        if said == self._before and self._arc.open:
+            self._arc.begin()
+            return "", None
+        return self._arc.add(point)
