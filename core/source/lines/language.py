@@ -6,45 +6,110 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Protocol
 
 from ...dialect import Dialect
 from ...errors import FlybyError, InputError, PluginFault, Span
 from ...language import Sources
 from ...program.move import Move, Opaque, Wait
 from ...program.program import Program
-from ...program.target import JointTarget, PoseTarget
+from ...program.target import JointTarget, PoseTarget, Target
 from ...robot.model import Robot
+from ...spatial.pose import IDENTITY, Pose
 from ..patch.edits import Edit
 from ..patch.uses import MovePart, Use, UseKind
 from ..reading import Files, ReadOptions, read_with
 from ..text.files import SourceFile, SourceText
 from ..text.numerals import nine_decimals
+from ..write.numbering import Numbering, PointNumbers
 from ..write.options import OpaqueStyle, PatcherOptions, WriterOptions
 from ..write.refusals import check_said
 from ..write.statements import lines_of_statements
 from .driving import MotionGrammar
 from .files import with_called
 from .interpreter import run_lines
+from .motions import MotionWords
+from .moves import said
 from .patcher import patch_lines
 from .program import LineProgram, mostly_said, plain_lines, read_lines
+from .settings import Settings
 from .statements import Line
 
 
-class LineWriter(Protocol):
-    """Writes one program; a new one for each."""
+class LineWriter:
+    """Writes one program; a new one for each.
 
-    def move(self, move: Move) -> Iterable[str]:
-        """The lines of a move, and what must be said before it."""
-        ...
+    Attributes:
+        words: of motions; None where settings say all of a move's speed and zone, and `move` its
+            line.
+        settings: what is said before motions.
+        called: a point as motions name it, of its ``number``.
+        first: number of the first point.
+        pause: the line of a wait, of its ``time``, s.
+        points: those that motions name; a language declares them by `point`.
+        setup: lines that stand before all others.
+    """
 
-    def wait(self, wait: Wait) -> str:
-        """The line of a wait."""
-        ...
+    words: MotionWords | None = None
+    settings: Settings = Settings()
+    called: str = "P[{number}]"
+    first: int = 1
+    pause: str = "WAIT {time}"
+
+    def __init__(self) -> None:
+        self.points = PointNumbers(self.point, self.first)
+        self.setup: list[str] = []
+        self.said: dict[str, str] = {}
+        self._frames: dict[str, Numbering[Pose]] = {}
+
+    def point(self, number: int, target: Target, *beside: str) -> str:
+        """The declaration of a point."""
+        raise NotImplementedError
 
     def text(self, name: str, lines: list[str]) -> str:
         """The whole file of the lines of all statements."""
-        ...
+        raise NotImplementedError
+
+    def move(self, move: Move) -> Iterable[str]:
+        """The lines of a move, and what must be said before it."""
+        yield from self.settings.lines(move, self.said)
+        yield self.motion(move)
+
+    def wait(self, wait: Wait) -> str:
+        """The line of a wait."""
+        return self.pause.format(time=nine_decimals(wait.duration))
+
+    # ------------------------------------------------------------- of which moves are made
+
+    def motion(self, move: Move, *beside: str) -> str:
+        """The line of a motion to its points; ``beside``: what else these say."""
+        assert self.words is not None
+        numbers = (self.points.of(target, *beside) for target in said(move)[1])
+        return self.words.text(move, *(self.called.format(number=one) for one in numbers))
+
+    def changed(self, word: str, *lines: str) -> Iterator[str]:
+        """Lines, unless they are those that were said last of a word."""
+        if self.said.get(word) != "\n".join(lines):
+            self.said[word] = "\n".join(lines)
+            yield from lines
+
+    def numbered(
+        self, word: str, most: int, pose: Pose, name: str, declared: Callable[[int], Iterable[str]]
+    ) -> int:
+        """The number of a tool or frame, 0 for none.
+
+        Args:
+            word: of its kind.
+            most: greatest number that there is.
+            name: as it is called in the program.
+            declared: the lines that declare the one of a number; they come into the `setup`.
+        """
+        if pose == IDENTITY:
+            return 0
+        numbers = self._frames.setdefault(word, Numbering(word, most))
+        new = pose not in numbers.numbers
+        found = numbers.of(pose, name)
+        self.setup += declared(found) if new else ()
+        return found
 
 
 class LineLanguage:
@@ -57,6 +122,9 @@ class LineLanguage:
         grammar: what a line of one file means.
         writer: writes one program.
         trailing: what begins a comment behind a statement; ``""`` for none.
+        longest_name: signs of a program's name at most; 0 for any number.
+        capitals: whether it is in capitals.
+        longest_comment: signs of a comment at most; 0 for any number.
         called: in a text, names of the programs that it calls, whose files stand beside; None for
             programs in one file.
         always: names of files, in lower case, that are read wherever they stand beside.
@@ -68,6 +136,9 @@ class LineLanguage:
     grammar: type[MotionGrammar]
     writer: type[LineWriter]
     trailing: str = ""
+    longest_name: int = 0
+    capitals: bool = False
+    longest_comment: int = 0
     called: re.Pattern[str] | None = None
     always: tuple[str, ...] = ()
 
@@ -83,11 +154,15 @@ class LineLanguage:
 
     def comment(self, text: str) -> Iterator[str]:
         """Lines of comment."""
-        yield f"{self.dialect.comment}{text}"
+        longest = self.longest_comment or max(1, len(text))
+        for at in range(0, max(1, len(text)), longest):
+            yield f"{self.dialect.comment}{text[at : at + longest]}"
 
-    def file_name(self, program: Program) -> str:
-        """The name of a program and its file."""
-        return re.sub(r"\W+", "_", program.name, flags=re.ASCII) or "main"
+    def named(self, name: str) -> str:
+        """A name that programs and files may have: letters, digits, ``_``; a letter comes first."""
+        name = re.sub(r"\W+", "_", name, flags=re.ASCII) or "main"
+        name = name if name[0].isalpha() else f"P_{name}"
+        return (name.upper() if self.capitals else name)[: self.longest_name or None]
 
     def number(self, value: float) -> str:
         """A number as the language writes it."""
@@ -148,7 +223,7 @@ class LineLanguage:
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `core.language.Writer`; the option is ``opaque``."""
-        name = self.file_name(program)
+        name = self.named(program.name)
         chosen = WriterOptions.of(options, f"{self.name} writer")
         return {f"{name}{self.suffix}": self.written(program, name, chosen)}
 

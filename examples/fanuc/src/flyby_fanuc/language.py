@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from flyby.core.language import Sources
-from flyby.core.program.program import Program
 from flyby.core.recording import Recording
 from flyby.core.robot.model import Robot
 from flyby.core.source.lines.language import LineLanguage
@@ -19,7 +18,7 @@ from .dialect import TP
 from .grammar import Grammar, lines
 from .moves import Place
 from .record import USUAL_PERIOD, record, steps
-from .writer import Writer, program_name
+from .writer import Writer
 
 _VARIABLES = {
     "framevar.va": {"$MNUFRAME": "UFRAME", "$MNUTOOL": "UTOOL"},
@@ -29,8 +28,6 @@ _VARIABLE = re.compile(
     r"^\[[^\]\r\n]*\](?P<name>\$\w+)|^\s*\[1,(?P<index>\d+)\]\s*=(?P<value>[^\[]*)", re.M
 )
 _COORDINATE = re.compile(r"\b([XYZWPR])\s*:\s*(-?[\d.]+)")
-_REMARK = 32
-"""Characters of a remark."""
 
 
 class Language(LineLanguage):
@@ -45,6 +42,9 @@ class Language(LineLanguage):
     dialect = TP
     grammar = Grammar
     writer = Writer
+    longest_name = 36
+    capitals = True
+    longest_comment = 32
     called = re.compile(r"\b(?:CALL|RUN)\s+([\w-]+)", re.IGNORECASE)
     always = tuple(_VARIABLES)
 
@@ -59,14 +59,10 @@ class Language(LineLanguage):
             return super().program(text, file)
         return LineProgram(file, {file: text}, {"": Body()}, data=dict(_variables(text, words)))
 
-    def file_name(self, program: Program) -> str:
-        """See `LineLanguage`."""
-        return program_name(program.name)
-
     def comment(self, text: str) -> Iterator[str]:
         """See `LineLanguage`."""
         said = " ".join(text.removeprefix(TP.comment).replace(";", ",").split())
-        yield from (f"  !{said[at : at + _REMARK]}" for at in range(0, len(said), _REMARK))
+        yield from (f"  {line}" for line in super().comment(said))
 
     def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
         """See `flyby.core.language.Recorder`."""

@@ -10,7 +10,7 @@ from flyby.core.robot.model import Robot
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.write.options import OpaqueStyle, WriterOptions
 
-from .writer import Writer, program_name, whole
+from .writer import Writer, whole
 
 STEP = 0.008
 """s between positions that the controller computes."""
@@ -30,10 +30,10 @@ def record(recording: Recording, robot: Robot, period: float, language: LineLang
     """
     cycles_in(period, STEP, robot.name)
     logger = {"flyby_log.kl": _logger(recording, period)}
-    name = program_name(recording.name)
+    name = language.named(recording.name)
     if recording.alone:
         return {f"{name}.ls": _logged(recording, 0, name, language), **logger}
-    names = [program_name(routine(k)) for k, _ in enumerate(recording.runs, 1)]
+    names = [language.named(routine(k)) for k, _ in enumerate(recording.runs, 1)]
     called = []
     for number, run in enumerate(names, 1):
         called += ["  PAUSE"] if number in recording.jogged else []

@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 from flyby.core.dialect import Dialect, MoveWords, Orientation
 from flyby.core.errors import InputError, SourceError
 from flyby.core.program.arc_orientation import ArcOrientation
-from flyby.core.program.move import Move, Wait
-from flyby.core.program.program import Program
+from flyby.core.program.move import Move
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
 from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Placed
 from flyby.core.source.lines.expressions import Number, Operation, Spelling
 from flyby.core.source.lines.forms import Found
-from flyby.core.source.lines.language import LineLanguage
+from flyby.core.source.lines.language import LineLanguage, LineWriter
 from flyby.core.source.lines.motions import MotionWords
 from flyby.core.source.lines.moves import said
 from flyby.core.source.lines.positions import PositionForm
@@ -27,7 +26,6 @@ from flyby.core.source.lines.program import Said
 from flyby.core.source.lines.signals import Signals
 from flyby.core.source.lines.statements import Assign, Line, Numbers, Situation
 from flyby.core.source.text.numerals import nine_decimals
-from flyby.core.source.write.numbering import PointNumbers
 
 LEVELS = (0.0125, 0.025, 0.05, 0.1)
 """m, of PL=1 to PL=4 as operator's manuals of the DX controllers have them."""
@@ -167,37 +165,38 @@ SPEAKS = Dialect(
 )
 
 
-def _position(number: int, target: Target) -> str:
-    joints = isinstance(target, JointTarget)
-    head = "///POSTYPE ANGLE\n///ANGLE" if joints else "///POSTYPE BASE\n///RECTAN"
-    return f"{head}\nC{number:05}={','.join(map(nine_decimals, XYZ.numbers(target)))}"
+class Writer(LineWriter):
+    """Writes one job; without a PL the robot is taken to stop."""
 
+    words = MOTION
+    called = "C{number:05}"
+    first = 0
+    pause = "TIMER T={time}"
 
-@dataclass
-class Writer:
-    """Writes one job."""
+    def __init__(self) -> None:
+        super().__init__()
+        self._last: str | None = None
 
-    _positions: PointNumbers = field(default_factory=lambda: PointNumbers(_position, first=0))
-    _last: int | None = None
+    def point(self, number: int, target: Target, *beside: str) -> str:
+        """See `LineWriter`."""
+        joints = isinstance(target, JointTarget)
+        head = "///POSTYPE ANGLE\n///ANGLE" if joints else "///POSTYPE BASE\n///RECTAN"
+        return f"{head}\nC{number:05}={','.join(map(nine_decimals, XYZ.numbers(target)))}"
 
     def move(self, move: Move) -> Iterator[str]:
-        """The instructions of a move; without a PL the robot is taken to stop."""
+        """Each point has a motion; an arc begins with the one where the robot stands."""
         kind, targets = said(move)
-        numbers = [self._positions.of(target) for target in targets]
+        names = [self.called.format(number=self.points.of(target)) for target in targets]
         if kind == "C":
             if self._last is None:
                 raise InputError("an arc begins where a motion before it ends: state a start")
-            numbers.insert(0, self._last)
-        self._last = numbers[-1]
-        yield from (MOTION.text(move, f"C{number:05}") for number in numbers)
-
-    def wait(self, wait: Wait) -> str:
-        """The instruction of a wait."""
-        return f"TIMER T={nine_decimals(wait.duration)}"
+            names.insert(0, self._last)
+        self._last = names[-1]
+        yield from (MOTION.text(move, name) for name in names)
 
     def text(self, name: str, lines: list[str]) -> str:
         """The whole job."""
-        count, positions = len(self._positions.texts), self._positions.texts
+        count, positions = len(self.points.texts), self.points.texts
         head = f"/JOB\n//NAME {name}\n//POS\n///NPOS {count},0,0,0,0,0\n///TOOL 0\n"
         body = [*positions, "//INST", "///ATTR SC,RW", "///GROUP1 RB1", "NOP", *lines]
         return head + "\n".join([*body, "END", ""])
@@ -212,7 +211,5 @@ class Language(LineLanguage):
     grammar = Grammar
     writer = Writer
     called = re.compile(r"\bCALL\s+JOB:([\w-]+)")
-
-    def file_name(self, program: Program) -> str:
-        """A name of 32 signs at most."""
-        return super().file_name(program).upper()[:32]
+    longest_name = 32
+    capitals = True

@@ -8,14 +8,14 @@ import pytest
 
 from flyby.core.dialect import Dialect, MoveWords, Orientation
 from flyby.core.errors import InputError, MotionError, PluginFault
-from flyby.core.program.move import Move, MoveJ, Wait
+from flyby.core.program.move import Move, MoveJ
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget
 from flyby.core.program.zone import Radius
 from flyby.core.source.lines.driving import MotionGrammar
 from flyby.core.source.lines.forms import FormGrammar, Found
-from flyby.core.source.lines.language import LineLanguage
+from flyby.core.source.lines.language import LineLanguage, LineWriter
 from flyby.core.source.lines.positions import PositionForm
 from flyby.core.source.lines.program import Said
 from flyby.core.source.lines.statements import Drive, Line, Operand
@@ -48,15 +48,9 @@ class Grammar(MotionGrammar):
         return Drive(line.span, none, none, none, build)
 
 
-class Writer:
+class Writer(LineWriter):
     def move(self, move: Move) -> Any:
         return [{}["MOVE"]]
-
-    def wait(self, wait: Wait) -> str:
-        return ""
-
-    def text(self, name: str, lines: list[str]) -> str:
-        return ""
 
 
 class Language(LineLanguage):
