@@ -103,7 +103,8 @@ class Data:
     def operand(self, operand: Operand) -> tuple[Numbers, MovePart]:
         """The numbers of a part of a move, and where they stand."""
         if operand.point is None:
-            kind = operand.kind or tuple(map(self._unit, operand.numbers))
+            units = tuple(map(self._unit, operand.numbers))
+            kind = units if operand.kind is None else operand.kind
             numbers = Numbers.of(map(self.values.number, operand.numbers), kind)
             sources = tuple(map(self.values.source_of, operand.numbers)) or (
                 Literal(operand.span, None, ()),

@@ -153,18 +153,24 @@ class MotionGrammar(FormGrammar):
         return self.drive(line, found)
 
     def drive(
-        self, line: Line, found: Found, moved: Moved = _there, events: tuple[Event, ...] = ()
+        self,
+        line: Line,
+        found: Found,
+        moved: Moved = _there,
+        events: tuple[Event, ...] = (),
+        via: Operand | None = None,
     ) -> Drive | None:
         """The motion of a line; None where an arc's other points are still to come.
 
         Args:
             moved: what its options make of where it goes.
             events: on its way.
+            via: the auxiliary point of an arc, where another line states it.
         """
         said, point = found["kind"].upper(), self.place(line, found, "point")
         kind = self.kinds.get(said, said[-1])
         given = found.groupdict()
-        via = self.place(line, found, "via") if given.get("via") else None
+        via = self.place(line, found, "via") if given.get("via") else via
         if said in self.chained:
             kind, via = self._chained(found["point"], point)
         else:

@@ -42,7 +42,8 @@ class LineWriter:
         words: of motions; None where settings say all of a move's speed and zone, and `move` its
             line.
         settings: what is said before motions.
-        called: a point as motions name it, of its ``number``.
+        called: a point as motions name it, of its ``number``, and ``kind``: ``J`` of joint values,
+            ``P`` of a pose.
         first: number of the first point.
         pause: the line of a wait, of its ``time``, s.
         points: those that motions name; a language declares them by `point`.
@@ -83,8 +84,12 @@ class LineWriter:
     def motion(self, move: Move, *beside: str) -> str:
         """The line of a motion to its points; ``beside``: what else these say."""
         assert self.words is not None
-        numbers = (self.points.of(target, *beside) for target in said(move)[1])
-        return self.words.text(move, *(self.called.format(number=one) for one in numbers))
+        return self.words.text(move, *(self.name(one, *beside) for one in said(move)[1]))
+
+    def name(self, target: Target, *beside: str) -> str:
+        """What a point is called, which is declared if it is new."""
+        kind = "J" if isinstance(target, JointTarget) else "P"
+        return self.called.format(number=self.points.of(target, *beside), kind=kind)
 
     def changed(self, word: str, *lines: str) -> Iterator[str]:
         """Lines, unless they are those that were said last of a word."""

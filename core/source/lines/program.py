@@ -33,7 +33,8 @@ class Grammar:
     """What a language takes a line for.
 
     Attributes:
-        registers: words of data that the program itself sets and reads, one number each.
+        registers: words of data that the program itself sets and reads, one number each; or what
+            they are like, where names of variables are.
         vectors: words of those that have several numbers, and how many.
         initial: what registers hold before the program sets them; their words need not stand
             among the others.
@@ -42,7 +43,7 @@ class Grammar:
         settings: what holds for the moves behind it until it is set again.
     """
 
-    registers: Container[str] = frozenset()
+    registers: Container[str] | re.Pattern[str] = frozenset()
     vectors: Mapping[str, int] = MappingProxyType({})
     initial: Initial = MappingProxyType({})
     outputs: Container[str] = frozenset()
@@ -51,8 +52,12 @@ class Grammar:
 
     def holds(self, word: str) -> bool:
         """Whether data of a word are what the program has set them to."""
-        known = word in self.registers or word in self.vectors or word in self.settings
-        return known or any(word == one for one, _ in self.initial)
+        if isinstance(self.registers, re.Pattern):
+            known = self.registers.fullmatch(word) is not None
+        else:
+            known = word in self.registers
+        others = {*self.vectors, *(one for one, _ in self.initial)}
+        return known or word in others or word in self.settings
 
     def statement(self, line: Line) -> Said:
         """What a line says; None for nothing, a comment.

@@ -89,9 +89,19 @@ class Signals:
             condition = self._condition(said.condition)
             return None if condition is None else WaitSignal(condition)
         if isinstance(said, Assign) and isinstance(said.value, Number | Truth):
-            name = self._name(said.target, (*self.digital, *self.analogue))
+            on, digital = self._truth(said.value), self._name(said.target, self.digital)
+            if digital is not None:
+                return SetSignal(digital, said.value.value if on is None else on)
+            name = self._name(said.target, self.analogue)
             return None if name is None else SetSignal(name, said.value.value)
         return None
+
+    def _truth(self, one: Expression) -> bool | None:
+        """On or off, by the words or numbers of the language; None for neither."""
+        if isinstance(one, Truth):
+            return one.value
+        numbers = {word: value for value, word in self.truths.items()}
+        return numbers.get(f"{one.value:g}") if isinstance(one, Number) else None
 
     def said(self, action: SignalAction) -> str | None:
         """The statement; None if there is none."""
@@ -144,10 +154,9 @@ class Signals:
         if one.word == "NOT":
             inner = self._condition(one.operands[0])
             return None if inner is None else negated(inner)
-        if one.word in ("=", "<>") and isinstance(one.operands[1], Truth):
+        if one.word in ("=", "<>") and (truth := self._truth(one.operands[1])) is not None:
             name = self._name(one.operands[0], (*self.digital, *self.inputs))
-            on = one.operands[1].value == (one.word == "=")
-            return None if name is None else Level(name, on)
+            return None if name is None else Level(name, truth == (one.word == "="))
         parts = [self._condition(operand) for operand in one.operands]
         if one.word not in ("AND", "OR") or None in parts:
             return None

@@ -186,7 +186,7 @@ class Writer(LineWriter):
     def move(self, move: Move) -> Iterator[str]:
         """Each point has a motion; an arc begins with the one where the robot stands."""
         kind, targets = said(move)
-        names = [self.called.format(number=self.points.of(target)) for target in targets]
+        names = [self.name(target) for target in targets]
         if kind == "C":
             if self._last is None:
                 raise InputError("an arc begins where a motion before it ends: state a start")
