@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
+from ...dialect import Dialect, MoveWords
 from ...errors import InputError, SourceError
+from ...program.arc_orientation import ArcOrientation
 from ...program.event import Event
 from ...program.move import Move
 from ...program.target import Target
@@ -24,6 +26,8 @@ from .moves import ArcPoints, made_move
 from .positions import PositionForm
 from .program import Said
 from .statements import Drive, Line, NumberedPoint, Numbers, Operand, Situation
+
+_SHARE = "acceleration_override"
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,14 +193,14 @@ class MotionGrammar(FormGrammar):
             goal = moved(self.placed(target, now), now)
             middle = self.placed(through, now).target if kind == "C" else None
             settings, joint = self.settings, kind == "J"
-            if self.words is None or settings.set(UseKind.SPEED):
+            if self.words is None or settings.sets(UseKind.SPEED):
                 pace = settings.speed(paces, joint)
             else:
                 scale = now.setting(self.override, 100.0) / 100 if self.override else 1.0
                 unit, share = given.get("unit", "") or "", bool(given.get("share"))
                 unit = None if not given.get("speed") else unit
                 pace = self.words.speed_of(kind, unit, paces, share, scale)
-            if self.words is None or settings.set(UseKind.ZONE):
+            if self.words is None or settings.sets(UseKind.ZONE):
                 near = settings.zone_of(sizes, joint)
             else:
                 near = self.words.zone_of(given.get("word") or next(iter(self.words.zones)), sizes)
@@ -221,7 +225,7 @@ class MotionGrammar(FormGrammar):
         return numbers
 
     def _stated(self, line: Line, found: Found, kind: UseKind, *groups: str) -> Operand:
-        if self.words is None or self.settings.set(kind):
+        if self.words is None or self.settings.sets(kind):
             return self.settings.operand(line, kind)
         whole, *numbers = (group for group in groups if group in found.re.groupindex)
         return self.numbers_at(line, found, whole, *(numbers or [whole]))
@@ -233,3 +237,52 @@ class MotionGrammar(FormGrammar):
             self._arc.begin()
             return "", None
         return self._arc.add(point)
+
+
+def dialect_of(
+    grammar: type[MotionGrammar], comment: str, *, configurations: bool = False, **others: Any
+) -> Dialect:
+    """What a language has words for, by what its motions and settings say.
+
+    Joint moves must state what paces them, lines and arcs their speed if there is one number alone
+    that says it. Arcs turn the tool evenly; there are no loads, stationary tools and external axes.
+
+    Args:
+        comment: what a line of comment begins with.
+        configurations: whether a target's configuration counts.
+        others: see `core.dialect.Dialect`; they go before what is derived.
+    """
+    pace = others.get("pace", "joint_fraction")
+    line = _move_words(grammar, False, configurations)
+    joint = _move_words(grammar, True, configurations)
+    made: dict[str, Any] = {
+        "joint": replace(joint, needs=frozenset({pace})),
+        "line": line,
+        "arc": line,
+        "pace": pace,
+        "arc_orientations": frozenset({ArcOrientation.FIXED_FRAME}),
+        "loads": False,
+        "stationary_tools": False,
+        "external_axes": False,
+        "orientation": grammar.form.orientation,
+        "in_si": grammar.form.in_si,
+    }
+    return Dialect(comment=comment, **{**made, **others})
+
+
+def _move_words(grammar: type[MotionGrammar], joint: bool, configurations: bool) -> MoveWords:
+    words, settings = grammar.words, grammar.settings
+    stated: set[str] = set()
+    if words is not None:
+        stated = {one.name for one in (words.joint if joint else words.line).values()}
+    held = settings.speeds(joint)
+    speeds = (stated | held) - {_SHARE}
+    shared = {_SHARE} if _SHARE in held or (words is not None and words.share) else set()
+    zones = (*(words.zones.values() if words is not None else ()), *settings.zones)
+    return MoveWords(
+        zones,
+        frozenset(speeds | shared),
+        frozenset(speeds) if len(speeds) == 1 else frozenset(),
+        configurations=configurations,
+        exclusive=frozenset(stated - {_SHARE}),
+    )

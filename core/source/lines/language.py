@@ -176,7 +176,7 @@ class LineLanguage:
     def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
         """The numbers of a speed or zone, in the order in which a move has them."""
         words, settings = self.grammar.words, self.grammar.settings
-        if words is not None and not settings.set(kind):
+        if words is not None and not settings.sets(kind):
             return words.numbers(part, move)
         return settings.numbers(kind, part, move)
 
@@ -184,10 +184,10 @@ class LineLanguage:
         """What is put at a move that gets numbers, or words, of its own."""
         words, settings = self.grammar.words, self.grammar.settings
         target = isinstance(use.new, JointTarget | PoseTarget)
-        if words is not None and (target or not settings.set(use.kind)):
+        if words is not None and (target or not settings.sets(use.kind)):
             yield from words.own(use)
             return
-        if target or not settings.set(use.kind):
+        if target or not settings.sets(use.kind):
             raise InputError("there is no number of its own to change: write the program anew")
         yield from settings.own(use)
 

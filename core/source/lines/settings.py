@@ -267,9 +267,22 @@ class Settings:
     def __contains__(self, word: object) -> bool:
         return word in self._words
 
-    def set(self, kind: UseKind) -> bool:
+    def sets(self, kind: UseKind) -> bool:
         """Whether they set a speed, or a zone."""
         return any(self._of(kind))
+
+    def speeds(self, joint: bool) -> set[str]:
+        """The numbers of `Speed` that they set, of joint moves or of lines and arcs."""
+        return {
+            amount.name
+            for one in self._of(UseKind.SPEED)
+            for amount in (*(one.joint if joint else one.line).values(), *one.more)
+        }
+
+    @property
+    def zones(self) -> tuple[type[Radius] | ZoneKind, ...]:
+        """The kinds of zone that they set."""
+        return (self.zone,) if self.sets(UseKind.ZONE) else ()
 
     # ----------------------------------------------------------------------- reading
 

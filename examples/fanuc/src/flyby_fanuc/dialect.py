@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from flyby.core.dialect import Dialect, MoveWords, RoutineText, Wording
-from flyby.core.program.arc_orientation import ArcOrientation
+from flyby.core.dialect import RoutineText, Wording
+from flyby.core.source.lines.driving import dialect_of
 from flyby.core.source.lines.signals import Signals
 
 from .grammar import Grammar, quiet
-from .words import CNT, CR, XYZ
 
 _SIGNALS = Signals(
     Grammar,
@@ -30,27 +29,10 @@ def _routines(text: str) -> Iterator[RoutineText]:
         yield RoutineText(found["name"], "", found.start(), found.start("body"), found.end())
 
 
-_LINE = MoveWords(
-    (CNT, CR),
-    frozenset({"tcp", "reorientation", "acceleration_override", "duration"}),
-    exclusive=frozenset({"tcp", "reorientation", "duration"}),
-)
-TP = Dialect(
-    joint=MoveWords(
-        (CNT, CR),
-        frozenset({"joint_fraction", "acceleration_override", "duration"}),
-        frozenset({"joint_fraction"}),
-        exclusive=frozenset({"joint_fraction", "duration"}),
-    ),
-    line=_LINE,
-    arc=_LINE,
-    pace="joint_fraction",
-    comment="!",
-    stationary_tools=False,
-    external_axes=False,
-    loads=False,
-    arc_orientations=frozenset({ArcOrientation.FIXED_FRAME}),
-    orientation=XYZ.orientation,
+TP = dialect_of(
+    Grammar,
+    "!",
+    configurations=True,
     length_decimals=3,
     angle_decimals=3,
     fastest=2.0,

@@ -8,14 +8,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from flyby.core.dialect import Dialect, MoveWords, Orientation
+from flyby.core.dialect import Orientation
 from flyby.core.errors import InputError, SourceError
-from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.move import Move
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Placed
+from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Placed, dialect_of
 from flyby.core.source.lines.expressions import Number, Operation, Spelling
 from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.language import LineLanguage, LineWriter
@@ -129,30 +128,11 @@ def _degrees(pulses: Numbers, now: Situation) -> Numbers:
     return Numbers.of(a / b for a, b in zip(pulses, rates, strict=True))
 
 
-_LINE_WORDS = MoveWords(
-    (PL,),
-    frozenset({"tcp", "reorientation", "acceleration_override"}),
-    exclusive=frozenset({"tcp", "reorientation"}),
-    configurations=False,
-)
-SPEAKS = Dialect(
-    joint=MoveWords(
-        (PL,),
-        frozenset({"joint_fraction", "acceleration_override"}),
-        frozenset({"joint_fraction"}),
-        configurations=False,
-    ),
-    line=_LINE_WORDS,
-    arc=_LINE_WORDS,
-    arc_orientations=frozenset({ArcOrientation.FIXED_FRAME}),
-    pace="joint_fraction",
-    comment="'",
+SPEAKS = dialect_of(
+    Grammar,
+    "'",
     tools=False,
     work_objects=False,
-    loads=False,
-    stationary_tools=False,
-    external_axes=False,
-    orientation=Orientation.EULER_ZYX,
     fastest=1.5,
     most={"acceleration_override": 1.0},
     signals=Signals(
