@@ -17,6 +17,7 @@ from ...program.event import Event
 from ...program.move import Move
 from ...program.target import Target
 from ...program.tool import FLANGE, WORLD, Tool, WorkObject
+from ...program.zone import FINE, Zone
 from ...spatial.pose import Pose
 from ..patch.uses import UseKind
 from .expressions import Expression, parse_all
@@ -106,8 +107,8 @@ class MotionGrammar(FormGrammar):
     The form ``motion`` has the groups ``kind`` and ``point``, and of these those that the language
     has: ``via``, the auxiliary point of an arc; ``pace``, the words of a speed, in it its ``speed``
     and ``unit``, and ``share``, one of acceleration in %; ``zone``, the words of a zone, in it its
-    ``word``, ``size`` and ``behind``. What settings set needs no group. The form ``point`` has
-    ``name``, ``values`` and ``kind``.
+    ``word``, ``size`` and ``behind``. What settings set needs no group; ``flying`` says whether a
+    zone that they set counts. The form ``point`` has ``name``, ``values`` and ``kind``.
 
     Attributes:
         form: of positions.
@@ -200,7 +201,9 @@ class MotionGrammar(FormGrammar):
                 unit, share = given.get("unit", "") or "", bool(given.get("share"))
                 unit = None if not given.get("speed") else unit
                 pace = self.words.speed_of(kind, unit, paces, share, scale)
-            if self.words is None or settings.sets(UseKind.ZONE):
+            if settings.flying and not found["flying"]:
+                near: Zone = FINE
+            elif self.words is None or settings.sets(UseKind.ZONE):
                 near = settings.zone_of(sizes, joint)
             else:
                 near = self.words.zone_of(given.get("word") or next(iter(self.words.zones)), sizes)
@@ -225,6 +228,8 @@ class MotionGrammar(FormGrammar):
         return numbers
 
     def _stated(self, line: Line, found: Found, kind: UseKind, *groups: str) -> Operand:
+        if kind is UseKind.ZONE and self.settings.flying and not found["flying"]:
+            return Operand(line.span)
         if self.words is None or self.settings.sets(kind):
             return self.settings.operand(line, kind)
         whole, *numbers = (group for group in groups if group in found.re.groupindex)

@@ -244,6 +244,8 @@ class Settings:
         settings: those of speeds in the order in which a move's numbers have them.
         zone: kind of the zones that they set.
         number: a number as the language writes it.
+        flying: whether motions themselves say that there is a zone (``MOVEFLY``, ``CP``): of a stop
+            nothing is set.
 
     Raises:
         InputError: spheres have one distance.
@@ -252,6 +254,7 @@ class Settings:
     settings: tuple[Setting, ...] = ()
     zone: type[Radius] | ZoneKind = Radius
     number: NumberText = nine_decimals
+    flying: bool = False
     _words: frozenset[str] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -434,4 +437,4 @@ class Settings:
         """Those that count for a part: of a stop, the one that says so, if there is one."""
         every = self._of(kind)
         switches = [one for one in every if PASSING in one.sets]
-        return switches if switches and isinstance(part, Fine) else every
+        return switches if isinstance(part, Fine) and (switches or self.flying) else every

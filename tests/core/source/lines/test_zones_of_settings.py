@@ -47,6 +47,7 @@ SWITCHED = (
 )
 BY_NUMBERS = Settings((SPEED, ACCEL, CNT), NEAR)
 BY_SWITCH = Settings((SPEED, *SWITCHED), NEAR)
+BY_MOTION = Settings((SPEED, *SWITCHED[1:]), NEAR, flying=True)
 WORDS = MoveWords((NEAR,), frozenset({"tcp", "joint_fraction", "acceleration_override"}))
 FORM = PositionForm(Orientation.EULER_ZYZ)
 ROBOT: Any = None
@@ -60,7 +61,7 @@ def language(held: Settings) -> LineLanguage:
         spelling = Spelling(names=True)
         driving = re.compile("[JL]MOVE")
         forms: ClassVar = {
-            "motion": r"(?P<kind>[JL])MOVE\s+(?P<point>\w+)",
+            "motion": r"(?P<kind>[JL])MOVE(?P<flying>FLY)?\s+(?P<point>\w+)",
             "point": r"POINT\s+(?P<name>\w+)\s*=\s*(?P<values>.*)",
             "assigned": r"(?P<target>\w+)\s*=\s*(?P<value>[^=].*)",
         }
@@ -73,7 +74,7 @@ def language(held: Settings) -> LineLanguage:
     return Language()
 
 
-NUMBERS, SWITCH = language(BY_NUMBERS), language(BY_SWITCH)
+NUMBERS, SWITCH, FLY = map(language, (BY_NUMBERS, BY_SWITCH, BY_MOTION))
 POINTS = "POINT a = 500, 0, 300, 0, 180, 0\nPOINT b = 500, 50, 300, 0, 180, 0\n"
 
 
@@ -155,6 +156,17 @@ def test_a_switch_says_whether_there_is_a_zone() -> None:
     assert patched(text, lambda *_: FINE, SWITCH) == text.replace("ON", "OFF")
     off = text.replace("ON", "OFF")
     assert patched(off, lambda *_: near(20, 5), SWITCH) == text.replace("30", "5")
+
+
+def test_a_motion_may_say_that_there_is_a_zone() -> None:
+    text = "LMOVE a\nLMOVEFLY b\nREACH = 30\nLMOVEFLY a\nLMOVE b\n"
+    assert zones(text, FLY) == [FINE, near(10, 10), near(10, 30), FINE]
+    text = "LEAVE = 20\nLMOVEFLY a\n"
+    assert patched(text, lambda *_: near(40, 10), FLY) == text.replace("20", "40")
+    with pytest.raises(FlybyError, match="does not give the changed program"):
+        patched(text, lambda *_: FINE, FLY)
+    (move,) = read("LMOVE a\n", FLY).moves
+    assert list(BY_MOTION.lines(move, {})) == ["SPD 100"]
 
 
 def test_a_sphere_has_one_distance() -> None:
