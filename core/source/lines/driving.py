@@ -18,15 +18,24 @@ from ...program.move import Move
 from ...program.target import Target
 from ...program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...program.zone import FINE, Zone
-from ...spatial.pose import Pose
+from ...spatial.pose import IDENTITY, Pose
 from ..patch.uses import UseKind
-from .expressions import Expression, parse_all
+from .expressions import Datum, Expression, Number, parse_all
 from .forms import FormGrammar, Found
 from .motions import MotionWords
 from .moves import ArcPoints, made_move
 from .positions import PositionForm
 from .program import Said
-from .statements import Drive, Line, NumberedPoint, Numbers, Operand, Situation
+from .statements import (
+    Assign,
+    AssignAll,
+    Drive,
+    Line,
+    NumberedPoint,
+    Numbers,
+    Operand,
+    Situation,
+)
 
 _SHARE = "acceleration_override"
 
@@ -108,7 +117,8 @@ class MotionGrammar(FormGrammar):
     has: ``via``, the auxiliary point of an arc; ``pace``, the words of a speed, in it its ``speed``
     and ``unit``, and ``share``, one of acceleration in %; ``zone``, the words of a zone, in it its
     ``word``, ``size`` and ``behind``. What settings set needs no group; ``flying`` says whether a
-    zone that they set counts. The form ``point`` has ``name``, ``values`` and ``kind``.
+    zone that they set counts. The form ``point`` has ``name``, ``values`` and ``kind``; the form
+    ``framed``, of a tool or frame that is set, ``word`` and ``place`` or ``values``.
 
     Attributes:
         form: of positions.
@@ -119,6 +129,7 @@ class MotionGrammar(FormGrammar):
         inline: a position at the motion itself, with the groups ``kind`` and ``values``.
         count: numbers of a position.
         override: word of the register that holds the speed override in %.
+        tool_word, frame_word: of the tool and the frame that hold until others are set.
     """
 
     form: PositionForm
@@ -129,24 +140,65 @@ class MotionGrammar(FormGrammar):
     inline: re.Pattern[str] = re.compile(r"(?!)(?P<kind>)(?P<values>)")
     count: int = 6
     override: str = ""
+    tool_word: str = ""
+    frame_word: str = ""
+    helpers: ClassVar[frozenset[str]] = FormGrammar.helpers | {
+        "placed",
+        "place",
+        "kind_of",
+        "drive",
+        "set_frames",
+    }
 
     def __init__(self) -> None:
         super().__init__()
         self._arc: ArcPoints[Operand] = ArcPoints()
         self._before = ""
+        if words := [word for word in (self.tool_word, self.frame_word) if word]:
+            none = Numbers.of(self.form.numbers(IDENTITY))
+            self.vectors = {**self.vectors, **dict.fromkeys(words, len(none))}
+            self.initial = {**{(word, None): none for word in words}, **self.initial}
 
     # ------------------------------------------------------- what a language may say otherwise
 
     def placed(self, numbers: Numbers, now: Situation) -> Placed:
         """Where the numbers of a point are; `numbers.kind` is that of the point."""
-        return Placed(self.form.target(numbers, numbers.kind in self.joints))
+        goal = self.form.target(numbers, numbers.kind in self.joints)
+        return Placed(goal, *self.set_frames(now))
 
     def kind_of(self, found: Found) -> object:
         """What a point is beside its numbers."""
         kind = found.groupdict().get("kind")
         return None if kind is None else kind.upper()
 
+    def set_frames(self, now: Situation) -> tuple[Tool, WorkObject]:
+        """The tool and the frame that hold, called as the points that they were set to."""
+        found = []
+        for word in (self.tool_word, self.frame_word):
+            numbers = now.vector(word, None) if word else Numbers()
+            pose = self.form.pose(numbers) if numbers else IDENTITY
+            name = numbers.kind if isinstance(numbers.kind, str) else word.strip("$").lower()
+            found.append((name or word.lower(), pose))
+        (tool, tcp), (frame, user) = found
+        return (
+            FLANGE if tcp == IDENTITY else Tool(tool, tcp),
+            WORLD if user == IDENTITY else WorkObject(frame, user=user),
+        )
+
     # --------------------------------------------------------------------------- its forms
+
+    def framed(self, line: Line, found: Found) -> Said:
+        """A tool or frame ``word``, else the tool, becomes a ``place``, ``values``, or none."""
+        given = found.groupdict()
+        datum = Datum(line.span, (given.get("word") or self.tool_word).upper(), None)
+        if given.get("place"):
+            return AssignAll(line.span, datum, ((1.0, self.datum(line, found, "place")),))
+        zero = (Number(line.span, one) for one in self.form.numbers(IDENTITY))
+        values = self._values(line, found) if given.get("values") else tuple(zero)
+        return [
+            Assign(line.span, replace(datum, element=Number(line.span, k + 1.0)), value)
+            for k, value in enumerate(values)
+        ]
 
     def point(self, line: Line, found: Found) -> NumberedPoint:
         """A point's ``name`` and ``values``."""

@@ -62,6 +62,7 @@ class FormGrammar(Grammar):
         stopping: names of kept instructions at which the robot stops.
         current: what stands for the numbers of where the running robot is, in capitals.
         longest: characters of a line.
+        helpers: methods that are no forms.
     """
 
     forms: ClassVar[Mapping[str, str]] = {}
@@ -70,6 +71,9 @@ class FormGrammar(Grammar):
     stopping: frozenset[str] = frozenset()
     current: frozenset[str] = frozenset()
     longest: int = 1000
+    helpers: ClassVar[frozenset[str]] = frozenset(
+        {"statement", "parse", "datum", "point_at", "numbers_at", "options", "holds"}
+    )
 
     def __init__(self) -> None:
         self._selected: list[tuple[Expression, bool]] = []
@@ -383,6 +387,10 @@ def _form(kind: type[FormGrammar], name: str, pattern: str) -> tuple[str, re.Pat
     method = getattr(kind, name.partition(".")[0], None)
     if method is None:
         raise InputError(f"forms of {kind.__qualname__}: {name!r} is called as no method of it")
+    if name.partition(".")[0] in kind.helpers:
+        raise InputError(
+            f"forms of {kind.__qualname__}: {name!r} is what forms are made with: call it otherwise"
+        )
     try:
         return name, re.compile(pattern, re.IGNORECASE | re.DOTALL), method
     except re.error as error:

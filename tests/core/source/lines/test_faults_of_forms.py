@@ -92,6 +92,7 @@ def test_a_writer_that_fails_is_named() -> None:
     [
         ({"motin": "A"}, r"forms of .*Wrong: 'motin' is called as no method of it"),
         ({"nothing": "A("}, r"forms of .*Wrong: 'nothing': missing \)"),
+        ({"parse.b": "A"}, r"forms of .*Wrong: 'parse\.b' is what forms are made with"),
     ],
 )
 def test_a_table_that_is_wrong_is_named(forms: dict[str, str], said: str) -> None:

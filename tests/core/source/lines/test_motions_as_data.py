@@ -48,6 +48,7 @@ class Grammar(MotionGrammar):
     joints = frozenset({"J"})
     inline = re.compile(r"(?P<kind>AT)\s*\((?P<values>[^()]*)\)")
     override = "OVR"
+    tool_word, frame_word = "TOOL", "BASE"
     registers = re.compile(r"V\w*|OVR")
     outputs = frozenset({"OUT"})
     spelling = Spelling(datum=re.compile(r"(?P<word>OUT|IN)#(?P<index>\d+)"), names=True)
@@ -58,6 +59,7 @@ class Grammar(MotionGrammar):
         r"\s+(?P<pace>(?P<speed>[\w.]+?)(?P<unit>%?))\s+"
         r"(?P<zone>FINE|(?P<word>NEAR)\s+(?P<size>[\w.]+)(?:,(?P<behind>[\w.]+))?)"
         r"(?:\s+A(?P<share>\d+))?",
+        "framed": r"(?P<word>TOOL|BASE)\s+(?:(?P<place>P\d+)|NONE|\((?P<values>.*)\))",
         "wait.for": r"WAIT\s+(?P<condition>.*=.*)",
         "wait": r"WAIT\s+(?P<time>.*)",
         "assigned": r"(?P<target>OUT#\d+|\w+)\s*=\s*(?P<value>.*)",
@@ -131,6 +133,17 @@ def test_positions_at_the_motion_and_an_override() -> None:
     assert (move.speed.tcp, move.zone) == (pytest.approx(0.045), NEAR.sized(0.06))
     with pytest.raises(SourceError, match="a position has 6 numbers, not 2"):
         read("LGO AT (1, 2) 90 FINE\n")
+
+
+def test_tools_and_frames_hold_until_others_are_set() -> None:
+    text = "LGO P2 90 FINE\nTOOL (0, 0, 100, 0, 0, 0)\nLGO P2 90 FINE\nBASE P3\nLGO P2 90 FINE\n"
+    moves = read(text + "TOOL NONE\nLGO P2 90 FINE\n").moves
+    assert [move.tool.tcp.position[2] for move in moves] == [0.0, 0.1, 0.1, 0.0]
+    frames = [move.work_object.pose.position for move in moves]
+    assert frames[:2] == [(0.0, 0.0, 0.0)] * 2
+    assert frames[2] == frames[3] == pytest.approx((0.5, 0.05, 0.3))
+    with pytest.raises(SourceError, match="a position has 6 numbers, not 2"):
+        read("TOOL (1, 2)\n")
 
 
 def test_what_is_written_is_read_again() -> None:
