@@ -228,13 +228,15 @@ class MotionGrammar(FormGrammar):
         kind = self.kinds.get(said, said[-1])
         given = found.groupdict()
         via = self.place(line, found, "via") if given.get("via") else via
+        fixed = moved is _there and point.point is not None and not self.holds(point.point.word)
+        called = found["point"] if fixed else ""
         if said in self.chained:
-            kind, via = self._chained(found["point"], point)
+            kind, via = self._chained(called, point)
         else:
             self._arc.end()
             if (kind == "C") != (via is not None):
                 raise InputError("an arc has two points, other motions have one")
-        self._before = found["point"]
+        self._before = called
         if not kind:
             return None
         speed = self._stated(line, found, UseKind.SPEED, "pace", "speed", "share")
@@ -288,9 +290,9 @@ class MotionGrammar(FormGrammar):
         return self.numbers_at(line, found, whole, *(numbers or [whole]))
 
     def _chained(self, said: str, point: Operand) -> tuple[str, Operand | None]:
-        """How a point of an arc is driven to, and through what; where the robot stands already, the
-        arc begins."""
-        if said == self._before and self._arc.open:
+        """How a point of an arc is driven to, and through what; at a fixed point where the robot
+        stands already, the arc begins."""
+        if said and said == self._before and self._arc.open:
             self._arc.begin()
             return "", None
         return self._arc.add(point)

@@ -120,6 +120,9 @@ def test_arcs_of_one_point_a_line_go_on_from_the_last() -> None:
         "LGO P2 90 FINE\nAGO P2 90 FINE\nAGO P3 90 FINE\nAGO AT (540, 60, 300, 0, 180, 0) 90 FINE\n"
     )
     assert [type(move) for move in read(text).moves] == [MoveL, MoveC]
+    here = "AT (500, V1, 300, 0, 180, 0) 90 FINE\n"
+    moved = read(f"V1 = 0\nLGO {here}V1 = 50\nAGO {here}").moves
+    assert [move.target.pose.position[1] for move in moved] == pytest.approx([0.0, 0.05])
     with pytest.raises(SourceError, match="the arc before has no end"):
         read("AGO P2 90 FINE\nAGO P3 90 FINE\nLGO P2 90 FINE\n")
     with pytest.raises(SourceError, match="an arc has two points, other motions have one"):
