@@ -4,15 +4,15 @@
 
 Runs of the real IRB 6640-180/2.55 are emulated as its type is driven (the shipped motion model),
 then with figures that were fitted to the other kinds of runs: lags of all joints
-(``elasticity.lag_s``), friction of joints 2 and 3 and transients of joints 1 to 3 (``servo``), and
-several of them. They are fitted to the joints' path, time aside, by linear least squares with the
-weights of `flyby identify`, to runs whose times the emulation holds; the two ways of friction are
-those of nine pairs that leave the others the least. A kind are the runs of like
-speeds (``by speed``), or of one program (``by program``). Cases are the kinds of speed; figures are
-means over their runs of an error over that without the servos' figures: of the TCP's path the
-greatest, 99 % and root mean square, of the joints' path the root mean square. Of distances medians
-of seven samples in a row count, as single samples of these logs are torn. Peer ``worst run`` is the
-greatest of a kind's. ``fitted`` tells the figures of a fit to all runs.
+(``elasticity.lag_s``), friction of joints 2 and 3, transients and drag of joints 1 to 3
+(``servo``), and several of them. They are fitted to the joints' path, time aside, by linear least
+squares with the weights of `flyby identify`, to runs whose times the emulation holds; the way and
+the time of friction are those of nine pairs that leave the others the least. A kind are the runs of
+like speeds (``by speed``), or of one program (``by program``). Cases are the kinds of speed;
+figures are means over their runs of an error over that without the servos' figures: of the TCP's
+path the greatest, 99 % and root mean square, of the joints' path the root mean square. Of distances
+medians of seven samples in a row count, as single samples of these logs are torn. Peer ``worst
+run`` is the greatest of a kind's. ``fitted`` tells the figures of a fit to all runs.
 """
 
 from __future__ import annotations
@@ -53,7 +53,8 @@ BACK = 0.15
 """s that a servo takes to make up for a torque."""
 IN_TIME = np.radians(1.0)
 """By how much joints may be off at their time in runs that figures are fitted to."""
-WAYS = tuple(product((1e-4, 2e-4, 5e-4), (4e-3, 8e-3, 1.6e-2)))
+WAYS = tuple(product((1e-4, 2e-4, 5e-4), (0.3, 0.6, 1.0)))
+"""rad within which friction sets in, and s within which it fades."""
 UNIT = 1e-3
 """rad of friction, or s of lag, that columns are made with."""
 COARSER = 4
@@ -65,12 +66,13 @@ SLOWEST = 0.02
 """Share of the greatest speed below which a sample tells no direction."""
 ERRORS = ("path_max", "path_p99", "path_rms", "joint_path_rms")
 SETS = {
-    "lag": (True, False, False),
-    "friction": (False, True, False),
-    "both": (True, True, False),
-    "all": (True, True, True),
+    "lag": (True, False, False, False),
+    "friction": (False, True, False, False),
+    "both": (True, True, False, False),
+    "without drag": (True, True, True, False),
+    "all": (True, True, True, True),
 }
-"""Which figures there are: lags, friction, transients."""
+"""Which figures there are: lags, friction, transients, drag."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +82,7 @@ class Regression:
     values: FloatArray
     lag: FloatArray
     transient: FloatArray
+    drag: FloatArray
     friction: dict[tuple[float, float], FloatArray]
 
 
@@ -141,14 +144,16 @@ def regression(name: str) -> Regression:
     states = smoothing.command(stamped, coarse)
     friction = {}
     for rise, fade in WAYS:
-        servo = Servo((UNIT,) * ROBOT.size, rise, fade)
+        servo = Servo((UNIT,) * ROBOT.size, rise=rise, fade=fade)
         rubbed = friction_at(servo, smoothing, stamped, coarse, states)
         friction[rise, fade] = columns(then(rubbed, coarse), RUBBED)
     giving = Servo(transient=(UNIT,) * ROBOT.size, transient_time=BACK)
     given = then(transient_at(giving, smoothing, stamped, coarse, states)[0], coarse)
+    dragged = Servo(drag=(UNIT,) * ROBOT.size)
+    drag = then(friction_at(dragged, smoothing, stamped, coarse, states), coarse)
     off = median_filter(found.alignment.off, (MEDIAN, 1), mode="nearest")
     lag = columns(UNIT * speed, range(ROBOT.size))
-    return Regression(aside(off), lag, columns(given, GIVING), friction)
+    return Regression(aside(off), lag, columns(given, GIVING), columns(drag, GIVING), friction)
 
 
 @cache
@@ -157,29 +162,36 @@ def in_time(name: str) -> bool:
     return emulated(name, TYPE).figures.joint_time_p99 < IN_TIME
 
 
-def fitted(names: Sequence[str], lags: bool, rubs: bool, gives: bool) -> MotionModel:
+def fitted(names: Sequence[str], lags: bool, rubs: bool, gives: bool, drags: bool) -> MotionModel:
     """The motion model with figures that are fitted to runs."""
     rows = [regression(name) for name in names if in_time(name)]
     best = np.inf, TYPE
     for ways in WAYS if rubs else WAYS[:1]:
         parts = [
-            np.hstack([r.lag] * lags + [r.friction[ways]] * rubs + [r.transient] * gives)
+            np.hstack(
+                [r.lag] * lags
+                + [r.friction[ways]] * rubs
+                + [r.transient] * gives
+                + [r.drag] * drags
+            )
             for r in rows
         ]
         found, loss = robust(np.vstack(parts), rows)
         lag, rest = np.split(found, [ROBOT.size * lags])
-        friction, transient = np.zeros(ROBOT.size), np.zeros(ROBOT.size)
-        if rubs:
-            friction[list(RUBBED)] = rest[: len(RUBBED)]
-        if gives:
-            transient[list(GIVING)] = rest[len(RUBBED) * rubs :]
+        friction, transient, drag = (np.zeros(ROBOT.size) for _ in range(3))
+        held, given, dragged = np.split(rest, np.cumsum([len(RUBBED) * rubs, len(GIVING) * gives]))
+        friction[list(RUBBED)[: len(held)]] = held
+        transient[list(GIVING)[: len(given)]] = given
+        drag[list(GIVING)[: len(dragged)]] = dragged
         model = TYPE
         if lags:
             shifts = tuple(map(float, UNIT * (lag - lag.mean())))
             model = replace(model, elasticity=replace(model.elasticity, lag=shifts))
-        if rubs or gives:
-            held, given = (tuple(map(float, UNIT * one)) for one in (friction, transient))
-            model = replace(model, servo=Servo(held, *ways, given, BACK))
+        if rubs or gives or drags:
+            made = (tuple(map(float, UNIT * one)) for one in (friction, drag, transient))
+            rub, pull, give = made
+            servo = Servo(rub, *ways, drag=pull, transient=give, transient_time=BACK)
+            model = replace(model, servo=servo)
         best = min(best, (loss, model), key=lambda pair: pair[0])
     return best[1]
 
@@ -222,6 +234,7 @@ def measure(case: str) -> Iterator[Figure]:
                 "lag": model.elasticity.lag,
                 "friction": servo.friction,
                 "transient": servo.transient,
+                "drag": servo.drag,
             }
             for key, values in told.items():
                 for joint, value in enumerate(values):
@@ -229,7 +242,7 @@ def measure(case: str) -> Iterator[Figure]:
                         yield Figure(case, f"{figures}: {key} {joint + 1}", 1e3 * value, "1e-3")
             if model.servo.rubs:
                 yield Figure(case, f"{figures}: rise", 1e3 * model.servo.rise, "1e-3")
-                yield Figure(case, f"{figures}: fade", 1e3 * model.servo.fade, "1e-3")
+                yield Figure(case, f"{figures}: fade", model.servo.fade, "s")
         return
     names = [name for name in runs() if speed_of(name) == case]
     without = np.array([errors(name, TYPE) for name in names])

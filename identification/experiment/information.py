@@ -153,8 +153,8 @@ def figures_of(model: MotionModel, about: Sequence[Topic] = ()) -> list[StudiedF
     if Topic.REVERSALS in about:
         for joint, rubs in enumerate(model.servo.friction):
             found.append(StudiedFigure(f"servo.friction_rad[{joint}]", rubs, FRICTION))
-        for key, way in (("rise", model.servo.rise), ("fade", model.servo.fade)):
-            found.append(StudiedFigure(f"servo.friction_{key}_rad", way, 0.5 * way))
+        for key, within in (("rise_rad", model.servo.rise), ("fade_s", model.servo.fade)):
+            found.append(StudiedFigure(f"servo.friction_{key}", within, 0.5 * within))
     return found
 
 

@@ -33,8 +33,8 @@ WRIST = 3
 """Joints, counted from 0, from which on the tool is turned."""
 SLOWER, HALF = 0.8, 0.5
 """Shares of accelerations that runs tell from the emulated ones."""
-RUB, BACKLASH = 1e-4, 1.0
-"""rad that friction sets joints off by, and a way of the joint that is never over."""
+RUB, BACKLASH = 1e-4, 1e4
+"""rad that friction sets joints off by, and s that no run takes."""
 BULGE = 1.0
 """β₀ by which corners may run otherwise."""
 _EVERY, _SAME = 2e-3, 1e-6
@@ -66,9 +66,10 @@ DECISIONS = {
         down differ, weight (torque.weight). Drive these runs with the flange bare and with the load
         mounted and declared, in a folder each, if the robot is to carry one.""",
     Topic.REVERSALS: """A stop without turning back shows what is the stop's own. What comes up
-        behind a reversal alone, within a small part of the way, and fades is friction: servo. What
-        stays until the joint turns back again is backlash, for which a long servo.friction_fade_rad
-        stands. What differs between the two rates depends on time and not on the way.""",
+        behind a reversal alone, within a small part of the way, and fades within a second or so is
+        friction: servo. What stays until the joint turns back again is backlash, for which a long
+        servo.friction_fade_s stands. What lasts as long a way at both rates fades by the way, for
+        which the model has no figure.""",
     Topic.BLENDS: """The rule with which the emulation runs nearest to the log, and takes its time,
         is the controller's. It is one for all only if it serves all angles, zones and speeds; of
         corners between two speeds it shows which of them counts.""",
@@ -136,7 +137,7 @@ def _figures(
                 yield f"limit.joint_acceleration_scale[{joint}]"
         case Topic.REVERSALS:
             yield from (f"servo.friction_rad[{joint}]" for joint in study.joints)
-            yield from ("servo.friction_rise_rad", "servo.friction_fade_rad")
+            yield from ("servo.friction_rise_rad", "servo.friction_fade_s")
         case Topic.BLENDS:
             yield from _blend_figures(candidate.kind, model)
 
@@ -214,12 +215,12 @@ def _alternatives(
                 yield "no motor holds weight", replace(model, torque=torque)
         case Topic.REVERSALS:
             joints = (-RUB,) * controller.robot.arm_size
-            fading = f"fades within {1e3 * model.servo.fade:.3g} mrad"
+            fading = f"fades within {model.servo.fade:.3g} s"
             for what, fade in (
                 (f"friction that {fading}", model.servo.fade),
                 ("backlash, which stays", BACKLASH),
             ):
-                rubs = Servo(joints, model.servo.rise, fade)
+                rubs = Servo(joints, rise=model.servo.rise, fade=fade)
                 yield f"{1e3 * RUB:.3g} mrad of {what}", replace(model, servo=rubs)
         case Topic.BLENDS:
             yield from _other_blends(candidate.kind, model)

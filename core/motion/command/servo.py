@@ -8,10 +8,17 @@ that the joint moves to,
 
     d ż = q̇ − z |q̇|,     −1 ≤ z ≤ 1.
 
-A servo does not know at once. What of it is not made up for is taken as the difference of two such
-states, one over a short way and one over a long one: the joint is off by friction · (z_rise −
-z_fade), which sets in as it turns back, stays within twice the friction, and fades. Motors and the
-links with them are off alike. As it depends on ways alone, it is the same at every speed.
+A servo does not know at once, and makes up for it within its integral time, w. So the joint is off
+by friction · (z − mean of z, weighed by e^(−age / w)), which sets in as it turns back, stays within
+twice the friction, and fades. Motors and the links with them are off alike.
+
+**Drag**, where they run fast. Friction grows with speed, too, and no servo makes up for all of it:
+a joint comes to be off by drag times
+
+    q̇ |q̇| / (|q̇| + v),
+
+v being the speed about which it sets in, averaged by e^(−age / T): after a while at even speed, and
+hardly at slow ones.
 
 **Transients**, where their velocities change. A servo gives way to a torque that it does not know
 of, until its integral part has made up for that: to a step of it within about its integral time,
@@ -35,10 +42,13 @@ from .smoothing import JointMotion, Smoothing, States, even_times
 
 _STEP = 2e-3
 """s between the times at which a joint's way is looked at, on which it is taken to go one way."""
+_SMALL = 1e-6
+"""Share of a time below which means are worked out by their first terms."""
 
 
 class FrictionMemory:
-    """What friction remembers of a motion that is worked out stretch by stretch, from rest on.
+    """What friction and drag remember of a motion that is worked out stretch by stretch, from rest
+    on.
 
     Args:
         servo: of the robot.
@@ -48,9 +58,9 @@ class FrictionMemory:
 
     def __init__(self, servo: Servo, smoothing: Smoothing, size: int) -> None:
         self._smoothing = smoothing
-        self._friction = filled(servo.friction, size)
-        self._ways = np.array([servo.rise, servo.fade])
-        self._held = np.zeros((2, size))
+        self._servo = servo
+        self._friction, self._drag = filled(servo.friction, size), filled(servo.drag, size)
+        self._held = np.zeros((3, size))
         self.known_to = 0.0
         """s, up to where the motion is known; before zero it rests."""
 
@@ -62,27 +72,38 @@ class FrictionMemory:
             t: (T,) s, not decreasing.
             states: (T, N) each, of the smoothed motion then.
         """
+        servo = self._servo
         even = even_times(self.known_to, max(float(t[-1]), self.known_to), _STEP)
-        way = self._smoothing.command(stamped, even)[0]
-        held = np.empty((2, *way.shape))
-        _fill_held(way, self._ways, self._held, held)
+        way, speed, _ = self._smoothing.command(stamped, even)
+        drawn = _dragged(speed, servo.drag_speed)
+        held = np.empty((3, *way.shape))
+        coming = _weights(np.array(_STEP), servo.drag_time)
+        weights = np.array([float(weight) for weight in coming])
+        _fill_held(way, drawn, servo.rise, _STEP / servo.fade, weights, self._held, held)
         last = np.clip(np.searchsorted(even, t, "right") - 1, 0, len(even) - 1)
+        since = (t - even[last])[:, None]
         q, dq, ddq = states
-        off = np.zeros_like(q), np.zeros_like(q), np.zeros_like(q)
-        for sign, long, at_knots in zip((1.0, -1.0), self._ways, held, strict=True):
-            z = _held_after(q - way[last], long, at_knots[last])
-            slope = (dq - z * np.abs(dq)) / long
-            bend = (ddq - slope * np.abs(dq) - z * np.sign(dq) * ddq) / long
-            for made, part in zip(off, (z, slope, bend), strict=True):
-                made += sign * self._friction * part
+        z, mean = _held_after(q - way[last], servo.rise, since / servo.fade, held[:2, last])
+        slope = (dq - z * np.abs(dq)) / servo.rise
+        bend = (ddq - slope * np.abs(dq) - z * np.sign(dq) * ddq) / servo.rise
+        gone = (z - mean) / servo.fade
+        kept, begun, ended = _weights(since, servo.drag_time)
+        pull = _dragged(dq, servo.drag_speed)
+        drag = kept * held[2, last] + begun * drawn[last] + ended * pull
+        rate = (pull - drag) / servo.drag_time
+        jerk = (_pulled(dq, servo.drag_speed) * ddq - rate) / servo.drag_time
         self.known_to, self._held = float(even[last[-1]]), held[:, last[-1]].copy()
-        return off
+        return (
+            self._friction * (z - mean) + self._drag * drag,
+            self._friction * (slope - gone) + self._drag * rate,
+            self._friction * (bend - (slope - gone) / servo.fade) + self._drag * jerk,
+        )
 
 
 def friction_at(
     servo: Servo, smoothing: Smoothing, stamped: JointMotion, t: FloatArray, states: States
 ) -> FloatArray:
-    """How far friction sets joints off (T, N) in a motion all of which is known.
+    """How far friction and drag set joints off (T, N) in a motion all of which is known.
 
     Args:
         servo: of the robot.
@@ -132,21 +153,68 @@ def friction_bound(servo: Servo, size: int) -> FloatArray:
     return 2.0 * np.abs(filled(servo.friction, size))
 
 
-def _held_after(step: FloatArray, way: float, before: FloatArray) -> FloatArray:
-    """What is held (T, N) after steps to one side, of what was held before."""
-    side = np.sign(step)
-    return np.asarray(side + (before - side) * np.exp(-np.abs(step) / way))
+def drag_bound(servo: Servo, fastest: FloatArray) -> FloatArray:
+    """(…, N) rad or m, beyond which drag sets no joint off that was never faster (…, N)."""
+    per = np.abs(filled(servo.drag, fastest.shape[-1]))
+    return np.asarray(per * _dragged(np.abs(fastest), servo.drag_speed))
+
+
+def _dragged(speed: FloatArray, v: float) -> FloatArray:
+    size = np.abs(speed)
+    return np.asarray(speed * size / (size + v))
+
+
+def _pulled(speed: FloatArray, v: float) -> FloatArray:
+    """Its derivative by the speed."""
+    size = np.abs(speed)
+    return np.asarray(size * (size + 2.0 * v) / (size + v) ** 2)
+
+
+def _held_after(
+    step: FloatArray, way: float, share: FloatArray, before: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """What is held, and its mean, (T, N) each, after steps to one side, which take shares (T, 1) of
+    the time that the mean looks back, of both (2, T, N) before."""
+    side, part = np.sign(step), np.abs(step) / way
+    kept, apart = np.exp(-share), share - part
+    left, z = before[0] - side, np.exp(-part)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        between = np.where(np.abs(apart) > _SMALL, (z - kept) / apart, kept)
+    mean = kept * before[1] + (1.0 - kept) * side + left * share * between
+    return np.asarray(side + left * z), np.asarray(mean)
+
+
+def _weights(since: FloatArray, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """In a mean of what goes straight since times: of the mean before, the first and the last."""
+    share = since / time
+    gone = -np.expm1(-share)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ended = np.where(share > _SMALL, 1.0 - gone / share, 0.5 * share)
+    return 1.0 - gone, gone - ended, ended
 
 
 @njit(cache=True, error_model="numpy")
-def _fill_held(q: FloatArray, ways: FloatArray, before: FloatArray, held: FloatArray) -> None:
-    """What is held (W, T, N) over each of the ways (W,) along configurations (T, N)."""
-    for w in range(ways.size):
-        for j in range(q.shape[1]):
-            z = before[w, j]
-            held[w, 0, j] = z
-            for k in range(1, q.shape[0]):
-                step = q[k, j] - q[k - 1, j]
-                side = np.sign(step)
-                z = side + (z - side) * np.exp(-abs(step) / ways[w])
-                held[w, k, j] = z
+def _fill_held(
+    q: FloatArray,
+    drawn: FloatArray,
+    way: float,
+    share: float,
+    weights: FloatArray,
+    before: FloatArray,
+    held: FloatArray,
+) -> None:
+    """What friction holds, its mean, and the mean of what drags, (3, T, N), along configurations
+    and what drags (T, N)."""
+    kept = np.exp(-share)
+    for j in range(q.shape[1]):
+        z, mean, drag = before[0, j], before[1, j], before[2, j]
+        held[0, 0, j], held[1, 0, j], held[2, 0, j] = z, mean, drag
+        for k in range(1, q.shape[0]):
+            step = q[k, j] - q[k - 1, j]
+            side, part = np.sign(step), abs(step) / way
+            left, less = z - side, np.exp(-part)
+            between = (less - kept) / (share - part) if abs(share - part) > _SMALL else kept
+            mean = kept * mean + (1.0 - kept) * side + left * share * between
+            z = side + left * less
+            drag = weights[0] * drag + weights[1] * drawn[k - 1, j] + weights[2] * drawn[k, j]
+            held[0, k, j], held[1, k, j], held[2, k, j] = z, mean, drag

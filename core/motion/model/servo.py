@@ -38,13 +38,41 @@ class Servo:
         fit=_TRAVEL,
     )
     fade: float = figure(
-        "friction_fade_rad",
+        "friction_fade_s",
         RealNumber(POSITIVE),
         Stage.LEAD,
-        "way of the joint within which that fades",
-        unit="rad (m of a linear axis)",
-        default=8e-3,
-        fit=_TRAVEL,
+        "time within which that fades, as the servo makes up for it",
+        unit="s",
+        default=0.6,
+        fit=FitRange(0.01, 1e4, 0.3),
+    )
+    drag: tuple[float, ...] = figure(
+        "drag_s",
+        Row(FINITE),
+        Stage.LEAD,
+        "how far a joint comes ahead where it runs fast for a while, per velocity (below zero: "
+        "behind); joints beyond do not",
+        unit="s",
+        default=(),
+        fit=FitRange(-0.02, 0.02, 1e-3),
+    )
+    drag_speed: float = figure(
+        "drag_speed_radps",
+        RealNumber(POSITIVE),
+        Stage.LEAD,
+        "speed at which that is half of what it is per velocity of fast joints",
+        unit="rad/s (m/s of a linear axis)",
+        default=0.5,
+        fit=FitRange(0.01, 10.0, 0.3),
+    )
+    drag_time: float = figure(
+        "drag_time_s",
+        RealNumber(POSITIVE),
+        Stage.LEAD,
+        "time within which that comes up",
+        unit="s",
+        default=0.3,
+        fit=FitRange(0.01, 10.0, 0.1),
     )
     transient: tuple[float, ...] = figure(
         "transient_s",
@@ -71,8 +99,8 @@ class Servo:
 
     @property
     def rubs(self) -> bool:
-        """Whether friction sets any joint off."""
-        return any(self.friction)
+        """Whether friction sets any joint off, or drag."""
+        return any(self.friction) or any(self.drag)
 
     @property
     def gives(self) -> bool:

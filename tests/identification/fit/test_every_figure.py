@@ -59,6 +59,7 @@ RICH = {
     "elasticity.weight": (0.0, 1.0),
     "elasticity.spring_rad": (1e-4,),
     "servo.friction_rad": (0.0, 1e-3),
+    "servo.drag_s": (0.0, 1e-3),
     "servo.transient_s": (1e-3,),
 }
 """What others need to show."""
@@ -115,7 +116,10 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "elasticity.spring_rad": ((2e-4,), {}),
     "servo.friction_rad": ((0.0, 5e-4), {}),
     "servo.friction_rise_rad": (1e-3, {}),
-    "servo.friction_fade_rad": (0.02, {}),
+    "servo.friction_fade_s": (0.2, {}),
+    "servo.drag_s": ((0.0, 2e-3), {}),
+    "servo.drag_speed_radps": (1.0, {}),
+    "servo.drag_time_s": (0.1, {}),
     "servo.transient_s": ((0.0, 2e-3), {}),
     "servo.transient_time_s": (0.3, {}),
 }

@@ -63,7 +63,7 @@ def test_virtual_controllers_have_no_servos() -> None:
 def test_every_joint_has_what_a_servo_has() -> None:
     texts = servo_parameters(TRUTH, ROBOT)
     found = ParameterSet.named(TRUTH, texts)
-    assert found.size == 3 * ROBOT.arm_size + 1 and not found.before[:-1].any()
+    assert found.size == 4 * ROBOT.arm_size + 1 and not found.before[:-1].any()
     assert ParameterSet.named(RUBBING, servo_parameters(RUBBING, ROBOT)).before[1] == 2e-4
     waiting = replace(TRUTH, settling=None)
-    assert len(servo_parameters(waiting, ROBOT)) == 3 * ROBOT.arm_size
+    assert len(servo_parameters(waiting, ROBOT)) == 4 * ROBOT.arm_size

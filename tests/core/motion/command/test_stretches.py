@@ -32,6 +32,7 @@ MODELS = {
     "slow start": MotionModel(smoothing=(0.05,), start_ramp=0.2),
     "lag": MotionModel(smoothing=(0.05, 0.03), elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))),
     "friction": MotionModel(servo=Servo((-1e-3, 1e-3, 2e-3))),
+    "drag": MotionModel(servo=Servo((1e-3,), drag=(-1e-3, 1e-3, 2e-3))),
     "transients": MotionModel(smoothing=(0.05,), servo=Servo(transient=(2e-3, -1e-3))),
     "transients, friction, elastic": MotionModel(
         smoothing=(0.04, 0.03),
