@@ -19,9 +19,13 @@ from .logs.cleaning import CleanLog
 from .logs.run import LoggedRun
 from .residuals import Figures, Residuals, figures, residuals
 from .torn_samples import find_torn, mended
+from .unplanned_stops import unplanned_stops, with_stops
 
 PERIOD = 5e-4
 """s between samples of the emulation. At 1 m/s round a radius of 10 mm, chords are 3 µm off."""
+STOPPED = 0.5
+"""Share of its distance in time, clock aside, that a log may keep that is emulated with a stop."""
+_MOST_STOPS = 5
 TOLD_APART = 0.75
 """Share of one's distance from the joints' path that another way to turn the tool may leave at most
 for a log to tell the two apart. It leaves a tenth and less of logs that the model explains else; of
@@ -43,6 +47,8 @@ class Prediction:
         read: the numbers of the samples as they were read, if some were put together; None if all
             are as they were read.
         turn: how the log shows that the tool turns along arcs; None if it does not.
+        stops: indices of the moves at whose end the log stops although they have a zone: they are
+            emulated with a stop.
     """
 
     name: str
@@ -54,6 +60,7 @@ class Prediction:
     figures: Figures
     read: Figures | None = None
     turn: ArcTurn | None = None
+    stops: tuple[int, ...] = ()
 
 
 def predict(
@@ -67,7 +74,8 @@ def predict(
     """Emulate a run's program and lay the log on it.
 
     Along arcs the tool turns as the log shows, whatever the motion model says: by some degrees a
-    log is off otherwise, and would be taken for one of another program.
+    log is off otherwise, and would be taken for one of another program. Where the log stops at a
+    point that the program passes, so does the emulation.
 
     Args:
         controller: emulates.
@@ -81,6 +89,42 @@ def predict(
         InputError: the log does not belong to the program; it says why, and names the run.
         MotionError: the program cannot be driven.
     """
+    found = _turned(controller, name, program, log, period, override)
+    stops: tuple[int, ...] = ()
+    for _ in range(_MOST_STOPS):
+        more = unplanned_stops(found.robot, found.driven, found.alignment, found.residuals)
+        if not more:
+            break
+        stops = tuple(sorted({*stops, *more}))
+        try:
+            stopped = _turned(controller, name, with_stops(program, stops), log, period, override)
+        except FlybyError:
+            break
+        if stopped.figures.joint_clock_rms > STOPPED * found.figures.joint_clock_rms:
+            break
+        said = (
+            f"stops at the end of {_moves(stops)}, which the program passes in a zone; so emulated "
+            "(a controller that has not planned the next move in time does so)"
+        )
+        noted = replace(stopped.log, notes=(*log.notes, *stopped.log.notes[len(log.notes) :], said))
+        found = replace(stopped, stops=stops, log=noted)
+    return found
+
+
+def _moves(indices: tuple[int, ...]) -> str:
+    numbers = [str(index + 1) for index in indices]
+    return f"move{'s' if len(numbers) > 1 else ''} {', '.join(numbers)}"
+
+
+def _turned(
+    controller: Controller,
+    name: str,
+    program: Program,
+    log: CleanLog,
+    period: float,
+    override: float,
+) -> Prediction:
+    """See `predict`; the tool turns along arcs as the log shows."""
     own = controller.model.arc_turn
     turns = _turns(own, program)
     found: dict[ArcTurn, Prediction] = {}

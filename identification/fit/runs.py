@@ -40,6 +40,7 @@ from ..logs.run import LoggedRun
 from ..prediction import Prediction, predict
 from ..tcp_path import tcp_positions
 from ..time_scale import Cause, TimeScale, time_scale
+from ..unplanned_stops import with_stops
 from .zone_sizes import COARSE, guess, resized
 
 PLACE, LAG = 1e-5, 1e-4
@@ -165,6 +166,8 @@ def prepare(run: LoggedRun, vendor: Vendor, robot: Robot, model: MotionModel) ->
         scale = time_scale(controller, found, COARSE)
     if scale is not None and scale.cause is Cause.OVERRIDE:
         found = predict(controller, run.name, run.program, log, COARSE, scale.value)
+    if found.stops:
+        run = replace(run, program=with_stops(run.program, found.stops))
     rows = found.alignment.rows
     at = found.alignment.time
     chosen = _chosen(found)
