@@ -6,21 +6,35 @@ import math
 
 import numpy as np
 from numba import njit
+from numba.extending import register_jitable
 
 from ..arrays import FloatArray
 
 
 def matrix_from_quaternion(quaternion: FloatArray) -> FloatArray:
     """Rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
-    w, x, y, z = np.moveaxis(quaternion, -1, 0)
-    return np.stack(
-        [
-            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], -1),
-            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], -1),
-            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1),
-        ],
-        -2,
-    )
+    q = np.ascontiguousarray(quaternion, dtype=float)
+    matrix = np.empty((*q.shape[:-1], 3, 3))
+    _fill_matrices(q.reshape(-1, 4), matrix.reshape(-1, 3, 3))
+    return matrix
+
+
+@register_jitable(error_model="numpy", _nrt=False)
+def _write_matrix(w: float, x: float, y: float, z: float, R: FloatArray) -> None:
+    """Write the rotation matrix (3, 3) of a unit quaternion."""
+    R[0, 0], R[1, 1] = 1 - 2 * (y * y + z * z), 1 - 2 * (x * x + z * z)
+    R[2, 2] = 1 - 2 * (x * x + y * y)
+    R[0, 1], R[1, 0] = 2 * (x * y - w * z), 2 * (x * y + w * z)
+    R[0, 2], R[2, 0] = 2 * (x * z + w * y), 2 * (x * z - w * y)
+    R[1, 2], R[2, 1] = 2 * (y * z - w * x), 2 * (y * z + w * x)
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
+def _fill_matrices(quaternions: FloatArray, matrices: FloatArray) -> None:
+    """Write the rotation matrices (M, 3, 3) of unit quaternions (M, 4)."""
+    for k in range(len(quaternions)):
+        w, x, y, z = quaternions[k, 0], quaternions[k, 1], quaternions[k, 2], quaternions[k, 3]
+        _write_matrix(w, x, y, z, matrices[k])
 
 
 def quaternion_from_matrix(matrix: FloatArray) -> FloatArray:
@@ -73,10 +87,20 @@ def rotation_vector(matrix: FloatArray) -> FloatArray:
 
 def matrix_from_rotation_vector(vector: FloatArray) -> FloatArray:
     """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) in rad."""
-    vector = np.asarray(vector, dtype=float)
-    half = 0.5 * np.linalg.norm(vector, axis=-1, keepdims=True)
-    scale = 0.5 * np.sinc(half / np.pi)
-    return matrix_from_quaternion(np.concatenate([np.cos(half), scale * vector], -1))
+    v = np.ascontiguousarray(vector, dtype=float)
+    matrix = np.empty((*v.shape, 3))
+    _fill_turns(v.reshape(-1, 3), matrix.reshape(-1, 3, 3))
+    return matrix
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)
+def _fill_turns(vectors: FloatArray, matrices: FloatArray) -> None:
+    """Write the rotation matrices (M, 3, 3) of rotation vectors (M, 3), through quaternions."""
+    for k in range(len(vectors)):
+        x, y, z = vectors[k, 0], vectors[k, 1], vectors[k, 2]
+        half = 0.5 * math.sqrt(x * x + y * y + z * z)
+        scale = 0.5 * math.sin(half) / half if half > 0.0 else 0.5
+        _write_matrix(math.cos(half), scale * x, scale * y, scale * z, matrices[k])
 
 
 def euler_zyx(matrix: FloatArray) -> tuple[float, float, float]:

@@ -74,7 +74,7 @@ class SearchModel(Protocol[P]):
     """What the search asks of a problem.
 
     Attributes:
-        lower, upper: (n,) bounds.
+        lower, upper: (n,) bounds; variables without any room between them stay.
         scale: (n,), change of each variable that matters about equally.
     """
 
@@ -91,11 +91,11 @@ class SearchModel(Protocol[P]):
         ...
 
     def jacobian(self, point: P, rows: IntArray) -> FloatArray:
-        """∂c/∂x (len(rows), n) of some constraints."""
+        """∂c/∂x (len(rows), n) of some constraints; zero by variables that stay."""
         ...
 
     def candidates(self, point: P, box: FloatArray) -> IntArray:
-        """Indices of constraints that a step of at most ``box`` (n,) could violate."""
+        """Indices, rising, of constraints that a step of at most ``box`` (n,) could violate."""
         ...
 
 
@@ -169,6 +169,12 @@ class Memory:
 
 @dataclass
 class _State(Generic[P]):
+    """Where a search stands.
+
+    Attributes:
+        rows, jacobian: of the constraints that were asked for at the point; None where it is new.
+    """
+
     point: P
     gradient: FloatArray
     box: float
@@ -176,6 +182,20 @@ class _State(Generic[P]):
     kinks: list[Kink]
     around: float
     stalls: int = 0
+    rows: IntArray | None = None
+    jacobian: FloatArray | None = None
+
+    def slopes(self, model: SearchModel[P], rows: IntArray) -> FloatArray:
+        """∂c/∂x of some constraints; once known, they need not be asked for again when a step from
+        the same point is made anew, in a smaller box."""
+        if self.rows is None or self.jacobian is None or not np.isin(rows, self.rows).all():
+            self.rows, self.jacobian = rows, model.jacobian(self.point, rows)
+        return self.jacobian[np.searchsorted(self.rows, rows)]
+
+    def move(self, point: P, gradient: FloatArray) -> None:
+        """Stand somewhere else."""
+        self.point, self.gradient = point, gradient
+        self.rows = self.jacobian = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,9 +250,10 @@ def _look_around(model: SearchModel[P], state: _State[P]) -> None:
     for nonsmooth, nonconvex optimization" (2005).
     """
     n = len(state.point.x)
+    count = np.count_nonzero(model.upper > model.lower)
     random = np.random.default_rng(n)
     state.kinks.clear()
-    for direction in random.uniform(-1.0, 1.0, (n, n)):
+    for direction in random.uniform(-1.0, 1.0, (count, n)):
         x = state.point.x + state.around * model.scale * direction
         near = model.point(np.clip(x, model.lower, model.upper))
         if near is not None:
@@ -254,7 +275,7 @@ def _iterate(model: SearchModel[P], state: _State[P], settings: SearchEffort) ->
     point = state.point
     box = state.box * model.scale
     rows = model.candidates(point, box)
-    jacobian = model.jacobian(point, rows)
+    jacobian = state.slopes(model, rows)
     live = point.constraints[rows] < np.abs(jacobian) @ box
     rows, jacobian = rows[live], jacobian[live]
     step = _step(model, state, jacobian, point.constraints[rows], box)
@@ -294,7 +315,7 @@ def _settle(
     gradient = model.gradient(trial)
     if ratio > _TAKEN and gained > 0.0:
         state.kinks.append(Kink(state.point.x, state.point.objective, state.gradient))
-        state.point, state.gradient = trial, gradient
+        state.move(trial, gradient)
         if ratio > _GOOD:
             state.box = min(_GROWTH * state.box, 4.0 * settings.box)
         elif ratio < _POOR:
@@ -328,9 +349,11 @@ def _subproblem(
     constraints: FloatArray,
     box: FloatArray,
 ) -> _Step:
-    """Over (d, t, s), with d in units of the box: everything is then of size one."""
-    point, n = state.point, len(state.point.x)
+    """Over (d, t, s), with d of what is free in units of the box: everything is of size one."""
+    point, free = state.point, np.flatnonzero(model.upper > model.lower)
+    n, box = len(free), box[free]
     slopes, heights = _planes(model, state)
+    slopes, jacobian = slopes[:, free], jacobian[:, free]
     rows = np.zeros((len(heights) + len(constraints), n + 2))
     rows[: len(heights), :n] = -slopes * box
     rows[: len(heights), n] = 1.0
@@ -341,8 +364,9 @@ def _subproblem(
     linear[n], linear[n + 1] = 1.0, state.price
     size = float(np.abs(slopes * box).max(initial=0.0))
     damping = np.concatenate([np.full(n, _DAMPING * size), np.zeros(2)])
-    lower = np.concatenate([np.maximum(-1.0, (model.lower - point.x) / box), [-np.inf, 0.0]])
-    upper = np.concatenate([np.minimum(1.0, (model.upper - point.x) / box), [np.inf, np.inf]])
+    below, above = ((bound - point.x)[free] / box for bound in (model.lower, model.upper))
+    lower = np.concatenate([np.maximum(-1.0, below), [-np.inf, 0.0]])
+    upper = np.concatenate([np.minimum(1.0, above), [np.inf, np.inf]])
     qp = QuadraticProgram(
         SparseMatrix(identity(n + 2), damping),
         linear,
@@ -355,7 +379,9 @@ def _subproblem(
     found = _solved(qp)
     price = float(np.abs(found.y[len(heights) :]).sum())
     slack = max(0.0, float(found.d[n + 1]))
-    return _Step(found.d[:n] * box, -float(found.d[n]), slack, price)
+    d = np.zeros(len(point.x))
+    d[free] = found.d[:n] * box
+    return _Step(d, -float(found.d[n]), slack, price)
 
 
 def _full(matrix: FloatArray) -> SparseMatrix:

@@ -24,7 +24,7 @@ from ....core.motion.gradients.sensitivity import (
 from ....core.motion.path.path import Path
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
-from ....core.program.target import JointTarget, PoseTarget
+from ....core.program.target import JointTarget
 from .blocks import MoveBlock
 from .parts import JointPoint, PosePoint, ZonePart
 from .variables import ProgramVariables
@@ -59,12 +59,12 @@ class DrivenBlock:
 
 @dataclass(frozen=True)
 class Change:
-    """How a drive changes with the variables.
+    """How a drive changes with the K variables that are free.
 
     Args:
-        q: (L, N, n), of the places asked for.
-        rooms: (R, n).
-        waypoints: (M + 1, N, n), of the configurations at the waypoints.
+        q: (L, N, K), of the places asked for.
+        rooms: (R, K).
+        waypoints: (M + 1, N, K), of the configurations at the waypoints.
     """
 
     q: FloatArray
@@ -165,7 +165,7 @@ class Driver:
         rooms = [made.reach(room.left) for room in drive.rooms]
         return Change(
             made.configurations(places, drive.q[which]),
-            np.array(rooms).reshape(len(rooms), self.variables.size),
+            np.array(rooms).reshape(len(rooms), directions.count),
             directions.waypoints,
         )
 
@@ -222,27 +222,14 @@ def _places(path: Path, density: int) -> PathPlaces:
 
 
 def directions_of(variables: ProgramVariables, drive: DrivenBlock) -> Directions:
-    """One direction for each variable.
+    """One direction for each variable that is free.
 
     Raises:
         MotionError: a pose target is singular.
     """
-    path, size = drive.path, variables.size
-    route = path.route
+    route, free = drive.path.route, variables.free
     joints, twists = _at_targets(variables, drive)
-    waypoints = np.zeros((len(route.moves) + 1, path.q.shape[1], size))
-    J = end_jacobians(route.ends.q, route.chains)[:, 1]
-    for k, move in enumerate(route.moves):
-        target = drive.program.moves[move].target
-        found = waypoints[k + 1]
-        # Axes that a target does not name keep the value that they had at the one before.
-        named = route.robot.arm_size + len(target.external)
-        found[named:] = waypoints[k, named:]
-        if isinstance(target, JointTarget):
-            found[:named] = joints[k, :named]
-        else:
-            _solve(path, k, target, J[k], waypoints[k], twists[k], found)
-    sizes = {name: np.zeros((len(route.zone_moves), size)) for name in SIZES}
+    sizes = {name: np.zeros((len(route.zone_moves), variables.size)) for name in SIZES}
     corner = {move: k for k, move in enumerate(route.zone_moves)}
     for index, part in enumerate(variables.parts):
         if isinstance(part, ZonePart):
@@ -250,7 +237,8 @@ def directions_of(variables: ProgramVariables, drive: DrivenBlock) -> Directions
             for k in (corner[move] for move in part.moves if move in corner):
                 for name, rate in zip(SIZES, part.rates(), strict=True):
                     sizes[name][k, column] = rate
-    return Directions(waypoints, sizes)
+    waypoints = _at_waypoints(drive, joints[..., free], twists[..., free])
+    return Directions(waypoints, {name: size[:, free] for name, size in sizes.items()})
 
 
 def _at_targets(variables: ProgramVariables, drive: DrivenBlock) -> tuple[FloatArray, FloatArray]:
@@ -261,51 +249,66 @@ def _at_targets(variables: ProgramVariables, drive: DrivenBlock) -> tuple[FloatA
     waypoint = {move: k for k, move in enumerate(path.route.moves)}
     for index, part in enumerate(variables.parts):
         own, values = variables.columns(index), variables.of(index, drive.x)
-        for k in (waypoint[move] for move in part.moves if move in waypoint):
-            if isinstance(part, JointPoint):
-                joints[k, list(part.axes), own] = part.slope(values)
-            elif isinstance(part, PosePoint):
-                twists[k, :3, own] = np.eye(3, 6)
-                twists[k, 3:, own][:, 3:] = left_jacobian(values[3:])
+        if isinstance(part, JointPoint):
+            slope = part.slope(values)
+            for k in (waypoint[move] for move in part.moves if move in waypoint):
+                joints[k, list(part.axes), own] = slope
+        elif isinstance(part, PosePoint):
+            slope = np.eye(6)
+            slope[3:, 3:] = left_jacobian(values[3:])
+            for k in (waypoint[move] for move in part.moves if move in waypoint):
+                twists[k, :, own] = slope
     return joints, twists
 
 
-def _solve(
-    path: Path,
-    k: int,
-    target: PoseTarget,
-    J: FloatArray,
-    before: FloatArray,
-    twist: FloatArray,
-    found: FloatArray,
-) -> None:
-    """Write how the configuration (N, n) at the pose target of segment k changes.
+def _at_waypoints(drive: DrivenBlock, joints: FloatArray, twists: FloatArray) -> FloatArray:
+    """(M + 1, N, K), how the configurations at the waypoints change where those of joint targets
+    (M, N, K) and the poses of the others (M, 6, K) do.
 
-    Args:
-        path, k, target: the path, the segment, and its target.
-        J: (6, N), there.
-        before: (N, n), how the configuration at the waypoint before changes.
-        twist: (6, n), how the pose changes.
-        found: written; the axes that the target does not name stand there already.
+    Raises:
+        MotionError: a pose target is singular.
+    """
+    route = drive.path.route
+    arm, J = route.robot.arm_size, end_jacobians(route.ends.q, route.chains)[:, 1]
+    waypoints = np.zeros((len(route.moves) + 1, *joints.shape[1:]))
+    squares = J[:, :, route.solved]
+    regular = np.zeros(len(squares), dtype=bool)
+    if len(route.solved) == 6:
+        regular = np.linalg.cond(squares) < SINGULAR_TARGET
+    for k, move in enumerate(route.moves):
+        target, found = drive.program.moves[move].target, waypoints[k + 1]
+        # Axes that a target does not name keep the value that they had at the one before.
+        named = arm + len(target.external)
+        found[named:] = waypoints[k, named:]
+        if isinstance(target, JointTarget):
+            found[:named] = joints[k, :named]
+        elif target.arm_angle is not None:
+            _lead(drive.path, k, J[k], twists[k], found)
+        elif not regular[k]:
+            raise _singular(move)
+        elif twists[k].any() or found.any() or waypoints[k].any():
+            redundant = route.prescribed[route.prescribed < arm]
+            found[redundant] = waypoints[k, redundant]
+            wanted = twists[k] - J[k][:, route.prescribed] @ found[route.prescribed]
+            found[route.solved] = np.linalg.solve(squares[k], wanted)
+    return waypoints
+
+
+def _lead(path: Path, k: int, J: FloatArray, twist: FloatArray, found: FloatArray) -> None:
+    """Write how the configuration (N, K) at the target of segment k changes, which states an arm
+    angle: that stays, and tells where the third axis stands.
 
     Raises:
         MotionError: it is singular.
     """
-    route, arm = path.route, path.route.robot.arm_size
-    q = route.ends.q[k, 1]
-    solved, prescribed = route.solved, route.prescribed
-    if target.arm_angle is not None:
-        # The arm angle stays, and tells where the third axis stands.
-        J = np.vstack([J, np.zeros((1, J.shape[1]))])
-        J[6, :arm] = route.robot.arm_angle_slope(q)
-        twist = np.vstack([twist, np.zeros((1, twist.shape[1]))])
-        solved, prescribed = np.arange(arm), np.arange(arm, len(q))
-    else:
-        redundant = prescribed[prescribed < arm]
-        found[redundant] = before[redundant]
-    square = J[:, solved]
+    arm, q = path.route.robot.arm_size, path.route.ends.q[k, 1]
+    square = np.vstack([J[:, :arm], path.route.robot.arm_angle_slope(q)])
     if not np.linalg.cond(square) < SINGULAR_TARGET:
-        raise MotionError(
-            "the arm is singular at the target, where derivatives do not exist", route.moves[k]
-        )
-    found[solved] = np.linalg.solve(square, twist - J[:, prescribed] @ found[prescribed])
+        raise _singular(path.route.moves[k])
+    wanted = np.zeros((arm, twist.shape[1]))
+    wanted[:6] = twist - J[:, arm:] @ found[arm:]
+    found[:arm] = np.linalg.solve(square, wanted)
+
+
+def _singular(move: int) -> MotionError:
+    return MotionError("the arm is singular at the target, where derivatives do not exist", move)

@@ -169,14 +169,18 @@ class BlockProblem:
         return np.flatnonzero(near)
 
     def jacobian(self, point: EvaluatedBlock, rows: IntArray) -> FloatArray:
-        """∂c/∂x of some constraints (len(rows), n)."""
-        drive = point.drive
+        """∂c/∂x of some constraints (len(rows), n).
+
+        Raises:
+            MotionError: a pose target is singular.
+        """
+        drive, free = point.drive, self.block.variables.free
         extreme = np.concatenate([drive.q.argmin(axis=0), drive.q.argmax(axis=0)])
         entries = list(self._entries(rows))
         wanted = [self._watched[k].places[sample] for k, (_, sample, _) in enumerate(entries)]
         which, back = np.unique(np.concatenate([*wanted, extreme]), return_inverse=True)
         change = self._driver.change(drive, which)
-        out = np.zeros((len(rows), self.block.variables.size))
+        out = np.zeros((len(rows), len(free)))
         done = 0
         for k, (at, sample, pair) in enumerate(entries):
             watched, distances = self._watched[k], point.distances[k]
@@ -185,7 +189,9 @@ class BlockProblem:
             out[at] = np.einsum("kj,kjn->kn", slopes, change.q[back[done : done + len(at)]])
             done += len(at)
         self._rest(point, rows, change.q[back[done:]], change.rooms, change.waypoints, out)
-        return out
+        whole = np.zeros((len(rows), self.block.variables.size))
+        whole[:, free] = out
+        return whole
 
     def _entries(self, rows: IntArray) -> Iterator[tuple[IntArray, IntArray, IntArray]]:
         """Places in ``rows`` of each scene's distances, and their samples and pairs.

@@ -167,10 +167,12 @@ class PosePoint(ViaPoint):
         return np.concatenate([change, np.zeros(3)])
 
     def applied(self, move: Move, values: FloatArray) -> Move:
-        matrix = self.target.pose.matrix()
-        x, y, z = (float(v) for v in matrix[:3, 3] + values[:3])
-        turned = matrix_from_rotation_vector(values[3:]) @ matrix[:3, :3]
-        w, i, j, k = (float(v) for v in quaternion_from_matrix(turned))
+        given = self.target.pose
+        x, y, z = (float(a + b) for a, b in zip(given.position, values[:3], strict=True))
+        w, i, j, k = given.quaternion
+        if values[3:].any():
+            turned = matrix_from_rotation_vector(values[3:]) @ given.matrix()[:3, :3]
+            w, i, j, k = (float(v) for v in quaternion_from_matrix(turned))
         pose = Pose((x, y, z), (w, i, j, k))
         return replace(move, target=replace(self.target, pose=pose))
 

@@ -6,10 +6,11 @@ Data that several moves read are one set of variables; what they are, `parts` sa
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 
-from ....core.arrays import FloatArray
+from ....core.arrays import FloatArray, IntArray
 from ....core.motion.gradients.derivatives import ProgramGradient
 from ....core.program.move import Move
 from ....core.program.program import Program
@@ -55,6 +56,11 @@ class ProgramVariables:
     def size(self) -> int:
         """Number of variables."""
         return int(self.offsets[-1])
+
+    @cached_property
+    def free(self) -> IntArray:
+        """Indices of those that have room between their bounds."""
+        return np.flatnonzero(self.lower < self.upper)
 
     def columns(self, part: int) -> slice:
         """Where the values of one part stand."""
