@@ -90,12 +90,14 @@ class Job:
         memory: where to begin, and with what.
         iterations: of a search, at most.
         stage: what is to be done.
+        refined: what is to be proven.
     """
 
     block: int
     memory: Memory
     iterations: int = _FINE_ITERATIONS
     stage: JobStage = JobStage.SEARCH
+    refined: Answer | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +142,14 @@ def work(shared: Shared, job: Job) -> Answer:
         return _searched(shared.controller, shared, job, settings, Aim(margin, FINE))
     if shared.task.rounding.predefined:
         shared, job = _with_chosen_zones(shared, job)
-    refined = _Refined(shared, job, Aim(margin, FINE), shared.effort.proofs + 1)
+    at_end = job.refined is not None and job.refined.memory.box <= _AGAIN_BOX
+    refined = _Refined(
+        shared,
+        job,
+        Aim(margin, FINE),
+        shared.effort.proofs + 1,
+        job.refined if at_end else None,
+    )
     solve_round_verify(shared.feasibility(job.block), refined)
     assert refined.answer is not None, "there is one attempt at least"
     return refined.answer
@@ -189,13 +198,15 @@ class _Refined:
         shared, job: see `work`.
         aim: of the next search.
         left: searches.
-        answer: of the last one.
+        refined: values whose search came to its end: they are tried as they are at first.
+        answer: of the last search.
     """
 
     shared: Shared
     job: Job
     aim: Aim
     left: int
+    refined: Answer | None = None
     answer: Answer | None = None
 
     def rounded(self) -> Program | None:
@@ -205,7 +216,9 @@ class _Refined:
         self.left -= 1
         shared, settings = self.shared, SearchEffort(_AGAIN_ITERATIONS, _AGAIN_BOX)
         job = replace(self.job, memory=Memory(self.job.memory.x, _AGAIN_BOX))
-        answer = _searched(shared.controller, shared, job, settings, self.aim)
+        answer, self.refined = self.refined, None
+        if answer is None:
+            answer = _searched(shared.controller, shared, job, settings, self.aim)
         if not shared.task.rounding.predefined:
             # Predefined: the next smaller zone would be far smaller; to be cut by a hair does no
             # harm.
@@ -244,4 +257,4 @@ def _with_chosen_zones(shared: Shared, job: Job) -> tuple[Shared, Job]:
     shared = replace(shared, blocks=tuple(blocks))
     x = np.clip(job.memory.x, chosen.lower, chosen.upper)
     refined = work(shared, replace(job, memory=Memory(x, FINE_BOX), stage=JobStage.REFINE))
-    return shared, replace(job, memory=refined.memory)
+    return shared, replace(job, memory=refined.memory, refined=refined)

@@ -56,6 +56,18 @@ def improve(shared: Shared, report: Report | None) -> tuple[list[Answer | None],
     return made.best, made.over
 
 
+def searched(shared: Shared, report: Report | None) -> tuple[list[Answer | None], bool]:
+    """What searches from every start come to, neither refined nor proven; see `improve`."""
+    jobs = _first(shared)
+    with worker_pool(partial(work, shared), shared.effort.processes, len(jobs)) as pool:
+        made = _Improvement(shared, pool, report)
+        try:
+            made.search(jobs)
+        except KeyboardInterrupt:
+            made.over = True
+    return made.searched, made.over
+
+
 class _Improvement:
     """One run.
 
@@ -89,6 +101,13 @@ class _Improvement:
             if not jobs:
                 return
 
+    @property
+    def searched(self) -> list[Answer | None]:
+        """The best that searches have come to in every block."""
+        blocks = range(len(self._shared.blocks))
+        own = [[a for a in self._found if a.block == k] for k in blocks]
+        return [min(answers, key=Answer.rank, default=None) for answers in own]
+
     def vary(self) -> None:
         """From near the best, in generations."""
         for generation in range(self._shared.effort.generations):
@@ -104,7 +123,7 @@ class _Improvement:
         queue = sorted(self._found, key=Answer.rank)
         while queue:
             turn = {a.block: a for a in reversed(queue) if self._may_lead(a)}
-            jobs = [Job(a.block, a.memory, stage=JobStage.PROVE) for a in turn.values()]
+            jobs = [Job(a.block, a.memory, stage=JobStage.PROVE, refined=a) for a in turn.values()]
             self._do("proving", jobs)
             queue = [a for a in queue if a not in turn.values() and self._may_lead(a)]
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TypeVar
 
 from ....core.cell.cell import Cell
 from ....core.collision.handled_scenes import scenes_along
@@ -25,16 +26,17 @@ from ..rounding import Rounding
 from ..solution import Solution, measure, moved_points
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .block_emulation import drivable
-from .block_search import Answer, Shared
+from .block_search import FEASIBLE, Answer, Shared
 from .blocks import MoveBlock, cut
 from .changeable import Selection, beside_parts, select, with_freed_stops
-from .multistart import improve
+from .multistart import improve, searched
 from .options import Effort, Freedom, ViaCount, WaypointTask
 from .taken_back import without_idle_changes
 from .variables import make_variables
-from .via_selection import Counted, change_count, idle_points
+from .via_selection import Counted, Rough, Searches, change_count, idle_points
 from .zones_alone import with_zones_of, zones_alone
 
+Found = TypeVar("Found")
 _GAIN = 1e-6
 """Share of the objective below which nothing has been gained."""
 
@@ -196,6 +198,34 @@ class _Optimization:
         notes: list[Note],
     ) -> Counted | None:
         """The best proven program; None where the input is not bettered."""
+        shared = self._shared(program, task, effort, notes)
+        if not shared.blocks:
+            return None
+        best, ended = improve(shared, self.report)
+        self.ended = self.ended or ended
+        whole = _Whole(program, task.rounding, shared.blocks, _gains(best), notes)
+        held = solve_round_verify(self._feasibility(task), whole)
+        return None if held is None else self._judged(*held, task)
+
+    def _roughly(self, program: Program, task: WaypointTask, effort: Effort) -> Rough | None:
+        """What searches alone come to; None where nothing keeps the clearance.
+
+        Raises:
+            MotionError: the program cannot be driven, as it is or as it was found.
+        """
+        shared = self._shared(program, task, effort, [])
+        best, ended = searched(shared, self.report)
+        self.ended = self.ended or ended
+        if any(a is None or a.violation > FEASIBLE for a in best):
+            return None
+        whole = _Whole(program, task.rounding, shared.blocks, _gains(best), [])
+        found = whole.rounded() or program
+        return Rough(found, self._cost(self.controller.run(found, task.start)))
+
+    def _shared(
+        self, program: Program, task: WaypointTask, effort: Effort, notes: list[Note]
+    ) -> Shared:
+        """What searches of a program share."""
         run = self.controller.run(program, task.start)
         robot = self.controller.robot
         selection = select(program, run.path, robot, task)
@@ -203,16 +233,8 @@ class _Optimization:
         notes += _stays(program, selection, task.freedom)
         cut_blocks = cut(program, run.path, variables, robot.arm_size)
         blocks = drivable(self.controller, run.path, cut_blocks, notes)
-        if not blocks:
-            return None
         alone = replace(task, beside=None)
-        shared = Shared(self.controller, self._scenes(task), alone, effort, self._clearance, blocks)
-        best, ended = improve(shared, self.report)
-        self.ended = self.ended or ended
-        chosen = [a if a is not None and a.objective < 1.0 - _GAIN else None for a in best]
-        whole = _Whole(program, task.rounding, blocks, chosen, notes)
-        held = solve_round_verify(self._feasibility(task), whole)
-        return None if held is None else self._judged(*held, task)
+        return Shared(self.controller, self._scenes(task), alone, effort, self._clearance, blocks)
 
     def _bare(self, given: Run, found: Counted) -> Counted:
         """Without the changes that bring nothing, as far as the user has not ended the work."""
@@ -260,26 +282,35 @@ class _Optimization:
     def _counted(self, found: Counted) -> Counted:
         """With via points left out that serve nothing, and new ones that save time."""
 
-        def improved(program: Program, task: WaypointTask, effort: Effort) -> Counted | None:
-            if self.ended:
+        def unless_ended(
+            search: Callable[[Program, WaypointTask, Effort], Found | None],
+        ) -> Callable[[Program, WaypointTask, Effort], Found | None]:
+            def searched(program: Program, task: WaypointTask, effort: Effort) -> Found | None:
+                if self.ended:
+                    return None
+                try:
+                    return search(program, task, effort)
+                except KeyboardInterrupt:
+                    # Between searches, too: what is proven already stays.
+                    self.ended = True
+                except MotionError:
+                    pass
                 return None
-            try:
-                found = self._improved(program, task, effort, [])
-                # Nothing is left to change, or to better.
-                return found or self._judged(*self._feasibility(task).verified(program), task)
-            except KeyboardInterrupt:
-                # Between searches, too: what is proven already stays.
-                self.ended = True
-            except MotionError:
-                pass
-            return None
+
+            return searched
+
+        def improved(program: Program, task: WaypointTask, effort: Effort) -> Counted | None:
+            found = self._improved(program, task, effort, [])
+            # Nothing is left to change, or to better.
+            return found or self._judged(*self._feasibility(task).verified(program), task)
 
         def selected(counted: Counted) -> Selection:
             run, task = counted.run, counted.task
             return select(run.program, run.path, robot, task)
 
         robot = self.controller.robot
-        return change_count(found, improved, selected, self.effort, robot.arm_size)
+        searches = Searches(unless_ended(self._roughly), unless_ended(improved), selected)
+        return change_count(found, searches, self.effort, robot.arm_size)
 
     def _idle(self, found: Counted) -> list[Note]:
         """An offer to leave out via points that serve nothing."""
@@ -366,6 +397,11 @@ class _Whole:
             )
         )
         self.chosen[culprit] = None
+
+
+def _gains(best: Sequence[Answer | None]) -> list[Answer | None]:
+    """Those by which something is gained."""
+    return [a if a is not None and a.objective < 1.0 - _GAIN else None for a in best]
 
 
 def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Note]:

@@ -2,7 +2,8 @@
 
 It is done stretch by stretch, from stop to stop, while all others stay. A via point goes if a short
 search from there ends no higher without it. Then every one is cut in two (`doubling`) and searched
-from there, briefly; the best of these is searched longer, and stays if it is better by enough.
+from there, briefly; the best of these are searched longer, and one stays if it is better by enough.
+What short searches come to is neither refined nor proven, so that only what may stay is.
 """
 
 from __future__ import annotations
@@ -31,6 +32,10 @@ _MOST = 4
 """Via points more in a stretch."""
 _BRIEF = 30
 """Iterations of a search that only compares."""
+_LONGER = 2
+"""Of those with one more, the best that are searched longer."""
+_ROUGH = 0.03
+"""Share of the stretch's cost by which more searching may better what a short search comes to."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +55,35 @@ class Counted:
     task: WaypointTask
 
 
-Improved = Callable[[Program, WaypointTask, Effort], Counted | None]
-Selected = Callable[[Counted], Selection]
+@dataclass(frozen=True)
+class Rough:
+    """What a short search comes to; nothing of it is proven.
+
+    Args:
+        program: with what was found.
+        cost: its objective.
+    """
+
+    program: Program
+    cost: float
+
+
+@dataclass(frozen=True)
+class Searches:
+    """What the count of via points asks for; each gives None where it cannot, or where the user has
+    ended the work.
+
+    Args:
+        roughly: searches a program.
+        improved: optimises one.
+        selected: what may change in a program.
+    """
+
+    roughly: Callable[[Program, WaypointTask, Effort], Rough | None]
+    improved: Callable[[Program, WaypointTask, Effort], Counted | None]
+    selected: Callable[[Counted], Selection]
+
+
 Renumbering = Callable[[int], int | None]
 
 
@@ -74,20 +106,17 @@ def idle_points(
             yield i
 
 
-def change_count(
-    best: Counted, improved: Improved, selected: Selected, effort: Effort, arm_size: int
-) -> Counted:
+def change_count(best: Counted, searches: Searches, effort: Effort, arm_size: int) -> Counted:
     """The program with as many via points as it is best with.
 
     Args:
         best: as it is.
-        improved: optimises a program; None where it cannot, or where the user has ended the work.
-        selected: what may change in a program.
+        searches: that find others.
         effort: of the searches so far; these are shorter, as they begin near an optimum.
         arm_size: number of the arm's own joints.
     """
     for number in range(len(_stretches(best))):
-        turn = _Turn(number, improved, selected, effort, arm_size)
+        turn = _Turn(number, searches, effort, arm_size)
         best = turn.with_more(turn.with_fewer(best))
     return best
 
@@ -98,12 +127,11 @@ class _Turn:
 
     Args:
         number: of the stretch; it stays the same, as no stop comes or goes.
-        improved, selected, effort, arm_size: as in `change_count`.
+        searches, effort, arm_size: as in `change_count`.
     """
 
     number: int
-    improved: Improved
-    selected: Selected
+    searches: Searches
     effort: Effort
     arm_size: int
 
@@ -115,39 +143,60 @@ class _Turn:
 
     def with_more(self, best: Counted) -> Counted:
         """With those that save time."""
+        given = best
         for _ in range(_MOST):
             more = self._with_one(best)
             if more is None:
                 break
             best = more
-        return best
+        if best is given or not self.effort.generations:
+            return best
+        varied = replace(self.effort, starts=1, generations=1)
+        found = self._search(best, best.run.program, lambda k: k, varied)
+        return best if found is None or found.cost >= best.cost else found
 
     def _without_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 + _SERVES_NOTHING * self._share(best))
-        for i in self._here(best, _dispensable(best, self.selected(best))):
-            found = self._search(best, without(best.run.program, i), _gone(i), self._brief)
+        for i in self._here(best, _dispensable(best, self.searches.selected(best))):
+            rough = self._compare(best, without(best.run.program, i), _gone(i))
+            if rough is None or not self._may_come_to(best, rough, most):
+                continue
+            found = self._search(best, rough.program, _gone(i), self._brief)
             if found is not None and found.cost <= most:
                 return found
         return None
 
     def _with_one(self, best: Counted) -> Counted | None:
-        tried = [found for i in self._divisible(best) if (found := self._divided(best, i))]
-        if not tried:
-            return None
-        found = min(tried, key=lambda counted: counted.cost)
-        longer = replace(self.effort, starts=1, generations=min(1, self.effort.generations))
-        found = self._search(found, found.run.program, lambda k: k, longer) or found
-        return found if found.cost < best.cost * (1.0 - _PAYS * self._share(best)) else None
+        most = best.cost * (1.0 - _PAYS * self._share(best))
+        tried = [(rough, i) for i in self._divisible(best) if (rough := self._divided(best, i))]
+        longer = replace(self.effort, starts=1, generations=0)
+        found = [
+            counted
+            for rough, i in sorted(tried, key=lambda pair: pair[0].cost)[:_LONGER]
+            if self._may_come_to(best, rough, most)
+            and (counted := self._search(best, rough.program, _later(i), longer)) is not None
+        ]
+        chosen = min(found, key=lambda counted: counted.cost, default=None)
+        return chosen if chosen is not None and chosen.cost < most else None
+
+    def _may_come_to(self, best: Counted, rough: Rough, cost: float) -> bool:
+        """Whether what a short search comes to may cost no more than that, once it is refined."""
+        return rough.cost - _ROUGH * self._share(best) * best.cost <= cost
 
     def _divisible(self, best: Counted) -> list[int]:
         """Via points that go where they like; what limits one says nothing of two."""
         task = best.task
-        candidates = self._here(best, _countable(best, self.selected(best)))
+        candidates = self._here(best, _countable(best, self.searches.selected(best)))
         return [i for i in candidates if isinstance(task.limits.get(i, task.limit), Free)]
 
-    def _divided(self, best: Counted, i: int) -> Counted | None:
+    def _divided(self, best: Counted, i: int) -> Rough | None:
         program = doubled(best.run.program, best.run.path, i, self.arm_size)
-        return None if program is None else self._search(best, program, _later(i), self._brief)
+        return None if program is None else self._compare(best, program, _later(i))
+
+    def _compare(self, best: Counted, program: Program, new: Renumbering) -> Rough | None:
+        """What a short search makes of a changed program; arguments as in `_search`."""
+        task = self._confined(best).renumbered(new, len(program.moves))
+        return self.searches.roughly(program, task, self._brief)
 
     def _search(
         self, best: Counted, program: Program, new: Renumbering, effort: Effort
@@ -161,7 +210,8 @@ class _Turn:
             effort: of the search.
         """
         count = len(program.moves)
-        found = self.improved(program, self._confined(best).renumbered(new, count), effort)
+        task = self._confined(best).renumbered(new, count)
+        found = self.searches.improved(program, task, effort)
         return None if found is None else replace(found, task=best.task.renumbered(new, count))
 
     def _confined(self, best: Counted) -> WaypointTask:

@@ -40,7 +40,13 @@ from flyby.problems.improve.waypoints import (
 from flyby.problems.improve.waypoints import optimize as optimizing
 from flyby.problems.improve.waypoints.changeable import Selection, select
 from flyby.problems.improve.waypoints.doubling import doubled
-from flyby.problems.improve.waypoints.via_selection import Counted, change_count, idle_points
+from flyby.problems.improve.waypoints.via_selection import (
+    Counted,
+    Rough,
+    Searches,
+    change_count,
+    idle_points,
+)
 from flyby.validation.scenes.scene import PARABOLAS, joint_target, with_zone
 from flyby.validation.scenes.two_joints import two_joints
 
@@ -155,6 +161,32 @@ def test_one_more_pays_and_the_user_may_end_it() -> None:
     assert len(seen) < 25
 
 
+def never(changed: Program, own: WaypointTask, effort: Effort) -> None:
+    """What nobody asks for where short searches come to nothing."""
+    raise AssertionError
+
+
+def test_what_short_searches_find_too_dear_is_not_optimised() -> None:
+    """Only the best of those that may save enough are searched longer."""
+    run = controller().run(THREE)
+    proof = certify(controller(), run, scenes_of(SCENE.cell), 0.005)
+    best = Counted(run, proof, 1.0, WaypointTask(axes=SCENE.free, tilt=math.pi))
+    asked: list[Program] = []
+
+    def selected(counted: Counted) -> Selection:
+        chosen = counted.run
+        return select(chosen.program, chosen.path, SCENE.cell.robot, counted.task)
+
+    def roughly(changed: Program, own: WaypointTask, effort: Effort) -> Rough:
+        return Rough(changed, 1.1 if len(changed.moves) < 4 else 1.0 - 0.01 * len(asked))
+
+    def improved(changed: Program, own: WaypointTask, effort: Effort) -> None:
+        asked.append(changed)
+
+    assert change_count(best, Searches(roughly, improved, selected), QUICK, ARM) is best
+    assert [len(changed.moves) for changed in asked] == [5, 5]
+
+
 def test_other_stretches_and_limited_points_are_left_alone() -> None:
     """There and back: the first way's second point is limited, and only the others are cut."""
     moves = list(THREE.moves)
@@ -166,14 +198,15 @@ def test_other_stretches_and_limited_points_are_left_alone() -> None:
     task = WaypointTask(axes=SCENE.free, tilt=math.pi, limits={1: PointBox(joints=(0.1,) * ARM)})
     asked: list[tuple[Program, WaypointTask]] = []
 
-    def improved(changed: Program, own: WaypointTask, effort: Effort) -> None:
+    def roughly(changed: Program, own: WaypointTask, effort: Effort) -> None:
         asked.append((changed, own))
 
     def selected(counted: Counted) -> Selection:
         return select(program, run.path, SCENE.cell.robot, counted.task)
 
     best = Counted(run, proof, 1.0, task)
-    assert change_count(best, improved, selected, QUICK, ARM) is best
+    searches = Searches(roughly, never, selected)
+    assert change_count(best, searches, QUICK, ARM) is best
     fewer = [own for changed, own in asked if len(changed.moves) < len(program.moves)]
     more = [own for changed, own in asked if len(changed.moves) > len(program.moves)]
     assert len(fewer) == 4 and len(more) == 3
@@ -192,7 +225,7 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
     task = WaypointTask(axes=SCENE.free, tilt=math.pi)
     asked: list[Program] = []
 
-    def improved(changed: Program, own: WaypointTask, effort: Effort) -> None:
+    def roughly(changed: Program, own: WaypointTask, effort: Effort) -> None:
         asked.append(changed)
 
     def selected(counted: Counted) -> Selection:
@@ -201,7 +234,7 @@ def test_a_point_where_something_is_switched_stays_one() -> None:
 
     best = Counted(run, proof, 1.0, task)
     assert list(selected(best).points) == [(0,), (1,), (2,)]
-    change_count(best, improved, selected, QUICK, ARM)
+    change_count(best, Searches(roughly, never, selected), QUICK, ARM)
     assert [len(changed.moves) for changed in asked] == [3, 3, 5, 5]
     for changed in asked:
         place = changed.statements.index(switch)
