@@ -33,12 +33,14 @@ class Handling:
         before, behind: names of the parts that are taken or released where the move begins, and
             where it ends, likewise.
         notes: what the user should know.
+        start: where the robot stands before the first move; None if nobody knows.
     """
 
     arrangements: tuple[Arrangement, ...]
     before: tuple[frozenset[str], ...]
     behind: tuple[frozenset[str], ...]
     notes: tuple[Note, ...]
+    start: JointTarget | None = None
 
     @property
     def targets(self) -> tuple[int, ...]:
@@ -69,6 +71,7 @@ class _Trace:
 
     def __init__(self, cell: Cell, moves: int, start: JointTarget | None) -> None:
         self._cell = cell
+        self._start = start
         self._flange = FlangeFollower(cell.robot, start)
         self._now: Arrangement = at_first(cell.parts)
         self._boxes: dict[str, tuple[Vector3, Vector3]] = {}
@@ -94,7 +97,8 @@ class _Trace:
         for part in self._cell.parts:
             self._check_met(part)
         before, behind = (tuple(map(frozenset, sets)) for sets in (self._before, self._behind))
-        return Handling(tuple(arrangements), before, behind, tuple(dict.fromkeys(self._notes)))
+        notes = tuple(dict.fromkeys(self._notes))
+        return Handling(tuple(arrangements), before, behind, notes, self._start)
 
     def _drive(self, move: Move) -> None:
         """Follow a move; what was handled before one that goes nowhere is so before the next."""

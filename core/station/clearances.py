@@ -93,7 +93,13 @@ class StationProver:
         own = {obstacle.name for obstacle in member.cell.obstacles}
         lone = sorted({thing for known in others for thing in own - known})
         return RobotMotion(
-            member.name, member.controller, member.run, member.cell, lone, any_speed=True
+            member.name,
+            member.controller,
+            member.run,
+            member.cell,
+            lone,
+            member.handling,
+            any_speed=True,
         )
 
     def prover(self, one: str, other: str) -> PairProver:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ..cell.cell import Cell
 from ..display import counted, in_line
+from ..handling.handling import Handling
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
@@ -50,6 +51,7 @@ class StationRobot:
         pace: at which its own time passes where others set it.
         passing: what it drives where it passes through zones that waits stand behind; None where
             there are none.
+        handling: of the parts of its cell; None for a cell without.
     """
 
     name: str
@@ -60,6 +62,7 @@ class StationRobot:
     begins: float = 0.0
     pace: ClockPace = field(default_factory=ClockPace.steady)
     passing: Passing | None = None
+    handling: Handling | None = None
 
     def __repr__(self) -> str:
         return in_line(

@@ -145,9 +145,9 @@ def _said(name: str, members: Members) -> bool:
 
 
 def _things(member: StationRobot) -> set[str]:
-    """Links, tools and obstacles of a robot, as pairs that may touch call them."""
+    """Links, tools, obstacles and parts of a robot, as pairs that may touch call them."""
     from ...core.collision.scene.bodies import bodies_of
 
     tools = dict.fromkeys(move.tool for move in member.program.moves)
     found = {body.part for tool in tools for body in bodies_of(member.cell, tool).bodies}
-    return found | set(member.cell.tool_geometries)
+    return found | set(member.cell.tool_geometries) | {part.name for part in member.cell.parts}

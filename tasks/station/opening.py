@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError, InputError, MotionError, Note
 from ..read import SourceOptions, read_with
+from ..results.cell_course import CellCourse
 from ..setup import setup_of_program, start_of
 from .names import check_names
+from .own_parts import check_own_parts
 
 if TYPE_CHECKING:
     from ...core.dialect import SignalWords
@@ -86,6 +88,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         why = "; ".join(note.message for note in unknown if "not followed" in note.message)
         raise InputError(f"{error}; {why}" if why else str(error)) from None
     _check_starts(file, members)
+    check_own_parts(file, members.values())
     try:
         shared = synchronised({n: m.run for n, m in members.items()}, actions, ids)
     except InputError as error:
@@ -361,7 +364,10 @@ def _member(
     except FlybyError as error:
         raise InputError(f"{file.file}: robot.{member.name}: {error}") from error
     cell = setup.surroundings(program)
-    made = StationRobot(member.name, program, controller, cell, run, member.begins)
+    handling = CellCourse.of(program, setup).handling
+    made = StationRobot(
+        member.name, program, controller, cell, run, member.begins, handling=handling
+    )
     return made, words, passed
 
 

@@ -137,7 +137,7 @@ def _release(
     outputs: frozenset[str],
 ) -> None:
     """Set a robot's outputs as early as is proven."""
-    from ...core.collision.proof.certificate import scenes_of
+    from ...core.collision.handled_scenes import scenes_along
     from ...core.source.patch.edits import reading_of
     from ...problems.improve.station.releases import EarlierReleases
 
@@ -151,7 +151,7 @@ def _release(
     earlier = EarlierReleases(
         feasibility,
         name,
-        scenes_of(member.cell),
+        scenes_along(member.cell, member.handling, lambda: member.run.path, member.cell.clearance),
         start_of(member.program),
         reread,
         outputs,
@@ -165,7 +165,7 @@ def _slow(
     feasibility: StationFeasibility, share: Share, solutions: dict[str, Solution], reserve: float
 ) -> None:
     """Put a slower program in the place of a robot's, where it would wait else."""
-    from ...core.collision.proof.certificate import scenes_of
+    from ...core.collision.handled_scenes import scenes_along
     from ...problems.improve.station.slowing import Slowing
     from ...problems.improve.waypoints import WaypointTask
 
@@ -176,7 +176,7 @@ def _slow(
     found = Slowing(
         feasibility,
         share.name,
-        scenes_of(member.cell),
+        scenes_along(member.cell, member.handling, lambda: member.run.path, member.cell.clearance),
         setup.vendor.speaks,
         WaypointTask(
             keep=moves,

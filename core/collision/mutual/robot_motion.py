@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ...cell.cell import Cell
-from ...errors import InputError
+from ...handling.handling import Handling
 from ...motion.emulator.controller import Controller
 from ...motion.emulator.run import Run
 from ...robot.shape import Sphere
@@ -22,6 +22,7 @@ from ..proof.enclosure import EnclosedIntervals, Enclosure
 from ..scene.bodies import Body, BodyKind, bodies_of
 from ..scene.frames import WORLD, frame_tree, place_bodies
 from ..scene.outline import outlines_of
+from ..scene.part_bodies import part_bodies, part_solids, refuse_parts
 from .pair_bounds import Side
 from .passing_times import PassingTimes
 from .swept_intervals import SweptIntervals, sweep_intervals
@@ -58,6 +59,8 @@ class RobotMotion:
         cell: the cell it stands in; of its obstacles those count that external axes carry, or
             that are named.
         obstacles: names of obstacles that other robots have not in their own cells.
+        handling: of the cell's parts: on each move they are carried, or lie where it says; None for
+            a cell without.
         any_speed: whether bounds hold at every override in (0, 1]; else at the emulated speed.
         residual: m by which a moving body may be elsewhere than the emulated motion says.
 
@@ -69,8 +72,8 @@ class RobotMotion:
             stood where it begins, and stands for ever where it ends.
 
     Raises:
-        InputError: the robot has no shapes, a tool is not in the cell, or the cell has parts that
-            are picked and placed.
+        InputError: the robot has no shapes, a tool is not in the cell, or the cell has parts and
+            nobody says where they are.
     """
 
     def __init__(
@@ -80,19 +83,20 @@ class RobotMotion:
         run: Run,
         cell: Cell,
         obstacles: Sequence[str] = (),
+        handling: Handling | None = None,
         *,
         any_speed: bool = False,
         residual: float = 0.0,
     ) -> None:
-        if cell.parts:
-            raise InputError(
-                f"{name}: clearances to other robots are not proven where parts are picked and "
-                "placed: take [[part]] out of its cell file, or make the parts' shapes its tool's"
-            )
+        if handling is None:
+            refuse_parts(cell)
         self.name, self.run, self._residual = name, run, residual
         self._tree = frame_tree(cell.robot)
         self._enclosure = Enclosure.of(run.path)
-        self.bodies, self._tools = _bodies(cell, run, obstacles)
+        standing, there = _bodies(cell, run, obstacles)
+        parts, carried = _parts(cell, run, handling)
+        self.bodies = [*standing, *parts]
+        self._there = np.concatenate([there, carried], axis=1)
         still = Body("", "", "", BodyKind.OBSTACLE, WORLD, Sphere(1.0), IDENTITY)
         outlines = outlines_of([*(own.body for own in self.bodies), still])
         places = np.array([own.body.placement.matrix() for own in self.bodies])
@@ -162,8 +166,9 @@ class RobotMotion:
         return R, p
 
     def there(self, moves: IntArray) -> NDArray[np.bool_]:
-        """Which bodies are there on moves (T,), (T, B): those of a tool only where it is driven."""
-        return np.asarray(self._tools[moves])
+        """Which bodies are there on moves (T,), (T, B): those of a tool only where it is driven,
+        those of a part where it is carried, or lies, so."""
+        return np.asarray(self._there[moves])
 
     def halved(self, which: IntArray) -> tuple[IntArray, NDArray[np.bool_]]:
         """The first of the two halves of intervals (K,); they are made when first asked for.
@@ -207,7 +212,7 @@ class RobotMotion:
             intervals.boxes,
             most,
             self._residual,
-            self._tools[moves],
+            self._there[moves],
             found,
         )
         return found
@@ -230,6 +235,31 @@ def _bodies(
         [[move.tool.name in there[name] for name in found] for move in run.program.moves]
     )
     return list(found.values()), present.reshape(len(run.program.moves), len(found))
+
+
+def _parts(
+    cell: Cell, run: Run, handling: Handling | None
+) -> tuple[list[OwnBody], NDArray[np.bool_]]:
+    """The bodies of parts at each of their places, and which are there on which move (M, B)."""
+    count = len(run.program.moves)
+    if handling is None:
+        return [], np.zeros((count, 0), dtype=np.bool_)
+    solids, _ = part_solids(cell.parts)
+    found: list[OwnBody] = []
+    there: list[NDArray[np.bool_]] = []
+    known: dict[tuple[object, ...], NDArray[np.bool_]] = {}
+    for move, arrangement in enumerate(handling.arrangements):
+        for placed in arrangement:
+            if placed.gone:
+                continue
+            key = placed.name, placed.held, placed.carrier, placed.pose
+            if key not in known:
+                known[key] = np.zeros(count, dtype=np.bool_)
+                bodies = part_bodies(cell.robot, (placed,), solids)
+                found += [OwnBody(body, body.frame != WORLD) for body in bodies]
+                there += [known[key]] * len(bodies)
+            known[key][move] = True
+    return found, np.stack(there, axis=1) if there else np.zeros((count, 0), dtype=np.bool_)
 
 
 def _deviations(deviation: Deviation, run: Run, any_speed: bool) -> list[DeviationBounds]:

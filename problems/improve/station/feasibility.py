@@ -23,6 +23,7 @@ from ....core.collision.mutual.pair_proof import (
 from ....core.collision.proof.verdict import Certificate, Verdict
 from ....core.dialect import SignalWords
 from ....core.errors import InputError, MotionError
+from ....core.handling.handling import handling_of
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
 from ....core.station.actions import Action, actions_of
@@ -195,7 +196,11 @@ class StationFeasibility:
 
     def _with(self, name: str, run: Run) -> StationSnapshot:
         members = dict(self.state.station.members)
-        members[name] = replace(members[name], program=run.program, run=run)
+        own = members[name]
+        handling = own.handling
+        if handling is not None:
+            handling = handling_of(run.program, own.cell, handling.start)
+        members[name] = replace(own, program=run.program, run=run, handling=handling)
         return self._state(replace(self.state.station, members=members), self.state)
 
     def _state(self, station: RobotStation, before: StationSnapshot | None) -> StationSnapshot:
@@ -235,6 +240,9 @@ class StationFeasibility:
 
     def _refused(self, name: str, state: StationSnapshot) -> Certificate | None:
         """Why a state is not taken over, as a certificate of one robot's run; None if it is."""
+        given, made = (s.station.members[name].handling for s in (self.given, state))
+        if given is not None and made is not None and given.arrangements != made.arrangements:
+            return _refusal("parts of its cell would be taken or released elsewhere")
         never = self._never_ends(state)
         if never is not None:
             return _refusal(f"beside the other robots {never}")
