@@ -27,7 +27,7 @@ from dataclasses import replace
 from report import Figure, cpu_seconds, main
 
 from flyby.core.collision.clearance import ClearanceMeter, nearest_of
-from flyby.core.collision.handled_scenes import handled_scenes
+from flyby.core.collision.handled_scenes import HandledScenes, PartScenes
 from flyby.core.collision.proof.certificate import (
     TOLERANCE,
     certify,
@@ -77,7 +77,7 @@ def _against_samples(seed: int) -> Counter[str]:
     handling, run = handling_of(program, cell), controller.run(program)
     dense = Controller(find_vendor(cell.vendor), cell.robot, controller.model, DENSE)
     by = worst_fault(cell, handling, dense.plan(program), clearance).by
-    scenes = handled_scenes(cell, handling, run.path, clearance)
+    scenes = HandledScenes(PartScenes(cell), handling, run.program, run.path, clearance)
     proven = certify(controller, run, scenes, clearance).proven
     met = nearest_of(ClearanceMeter(cell, program, handling).over(run.path, 0))
     clear = all(x is None or not (x.overlaps or x.distance < clearance - TOLERANCE) for x in met)

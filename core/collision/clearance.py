@@ -7,22 +7,23 @@ Looked at in small steps along the path, and closer where it is nearest: no proo
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import FloatArray
+from ..arrays import BoolArray, FloatArray
 from ..cell.cell import Cell
 from ..errors import InputError, Note
-from ..handling.arrangement import Arrangement
 from ..handling.handling import Handling
 from ..motion.path.path import Path
 from ..program.program import Program
 from ..program.tool import Tool
-from .scene.handled_pairs import RESTING, counted_distances, set_aside
+from .handled_scenes import HandledScenes, PartScenes
+from .proof.certificate import SceneOf
+from .scene.handled_pairs import counted_distances
 from .scene.scene import TOUCH, CollisionScene, TouchingPairs
 
 STEP = 0.01
@@ -111,8 +112,7 @@ class ClearanceMeter:
         self._program = program
         self._handling = handling
         self._scenes: dict[Tool, CollisionScene | None] = {}
-        self._smaller: dict[Tool, CollisionScene] = {}
-        self._recent: tuple[Tool, Arrangement, CollisionScene] | None = None
+        self._parts = PartScenes(cell)
         self.notes: list[Note] = []
 
     def over(self, path: Path, first: int, within: float = math.inf) -> list[MoveClearance]:
@@ -130,30 +130,38 @@ class ClearanceMeter:
         found: list[MoveClearance] = []
         limits = [within, within]
         owners = path.sample_moves()
-        for move in dict.fromkeys(owners.tolist()):
-            of_move = owners == move
-            rows = in_steps(path.q[of_move], path.states.dq[of_move], path.sigma[of_move])
-            scene = self._scene(first + move)
+        rows = {
+            first + move: _rows_of(path, owners == move) for move in dict.fromkeys(owners.tolist())
+        }
+        scenes, counted = self._along(path, first), dict[int, FloatArray]()
+        for move, q in rows.items():
+            scene = self._scene(scenes, move)
             if scene is None:
                 continue
-            scene = self._set_aside(scene, first + move, rows)
             own = _own_pairs(scene)
             told: list[Approach | None] = []
             for side, chosen in enumerate((~own, own)):
                 pairs = np.flatnonzero(chosen)
                 near = max(limits[side], min(self._cell.clearance, within))
-                met = self._nearest(scene, rows, pairs, near)
-                if scene.left_out is not None and not side:
-                    met = self._or_touching(met, scene.left_out, rows, near)
-                told.append(None if met is None else Approach(*met, first + move))
+                met = self._nearest(scene, q, pairs, near)
+                for touching in () if side else scene.left_out:
+                    met = self._or_touching(met, touching, move, rows, counted, near)
+                told.append(None if met is None else Approach(*met, move))
                 limits[side] = min(limits[side], math.inf if met is None else met[0])
-            found.append(MoveClearance(first + move, *told))
+            found.append(MoveClearance(move, *told))
         return found
 
-    def along(self, q: FloatArray, moves: Sequence[int], within: float) -> NearestToCell:
+    def along(
+        self,
+        paths: Iterable[tuple[Path, int]],
+        q: FloatArray,
+        moves: Sequence[int],
+        within: float,
+    ) -> NearestToCell:
         """What of the cell is nearest to the arm and what it carries, sample by sample.
 
         Args:
+            paths: of the program's driven parts, and the index of the first move of each.
             q: (M, N) rad or m.
             moves: (M,), index in the program of the move that each sample is of.
             within: m; what is farther is left out.
@@ -163,12 +171,15 @@ class ClearanceMeter:
         """
         found = NearestToCell.none(len(q))
         owners = np.asarray(moves, dtype=np.int64)
+        scenes: dict[int, SceneOf | None] = {}
+        for path, first in paths:
+            made = self._along(path, first)
+            scenes.update((first + move, made) for move in path.route.moves)
         for move in dict.fromkeys(owners.tolist()):
-            scene = self._scene(move)
+            scene = self._scene(scenes.get(move), move)
             if scene is None:
                 continue
             rows = np.flatnonzero(owners == move)
-            scene = self._set_aside(scene, move, q[rows])
             pairs = np.flatnonzero(~_own_pairs(scene))
             for row in rows.tolist():
                 met = scene.nearest(q[row : row + 1], pairs, within)
@@ -199,50 +210,60 @@ class ClearanceMeter:
         self,
         met: tuple[float, tuple[str, str]] | None,
         touching: TouchingPairs,
-        q: FloatArray,
+        move: int,
+        rows: Mapping[int, FloatArray],
+        counted: dict[int, FloatArray],
         within: float,
     ) -> tuple[float, tuple[str, str]] | None:
-        """What is nearest, or pairs that touch at an end of the move where these count."""
-        counted = counted_distances(touching, q, self._cell.clearance)
-        least = float(counted.min())
+        """What is nearest on a move, or pairs that touch at an end of a way where these count.
+
+        Args:
+            met: so far.
+            touching: pairs of a way that the move is of.
+            move: the move.
+            rows: configurations along all moves.
+            counted: what was found of ways already, by the ids of their pairs.
+            within: m.
+        """
+        first, last = touching.moves
+        way = [k for k in rows if first <= k <= last]
+        if id(touching) not in counted:
+            q = np.concatenate([rows[k] for k in way])
+            counted[id(touching)] = counted_distances(touching, q, self._cell.clearance)
+        begin = sum(len(rows[k]) for k in way[: way.index(move)])
+        here = counted[id(touching)][begin : begin + len(rows[move])]
+        least = float(here.min())
         if least >= within or (met is not None and met[0] <= least):
             return met
-        pair = int(np.unravel_index(int(counted.argmin()), counted.shape)[1])
+        pair = int(np.unravel_index(int(here.argmin()), here.shape)[1])
         return least, touching.scene.pair_names(pair)
 
-    def _set_aside(self, scene: CollisionScene, move: int, q: FloatArray) -> CollisionScene:
-        """The scene of a move with what touches along it in ``left_out``."""
-        handling = self._handling
-        if handling is None or not (handling.before[move] or handling.behind[move]):
-            return scene
-        kept, ends = self._cell.clearance, q[[0, -1]]
-        return set_aside(scene, handling, move, ends, kept, lambda: self._shrunk(move))
+    def _along(self, path: Path, first: int) -> SceneOf | None:
+        """The scenes of a path with parts; None for a cell without."""
+        if self._handling is None:
+            return None
+        kept = self._cell.clearance
+        return HandledScenes(self._parts, self._handling, self._program, path, kept, first)
 
-    def _shrunk(self, move: int) -> CollisionScene:
-        """The scene of a move with smaller parts."""
-        assert self._handling is not None
-        tool, parts = self._program.moves[move].tool, self._handling.arrangements[move]
-        if tool not in self._smaller:
-            self._smaller[tool] = CollisionScene(self._cell, tool, parts, RESTING)
-        return self._smaller[tool].rearranged(parts)
-
-    def _scene(self, move: int) -> CollisionScene | None:
+    def _scene(self, scenes: SceneOf | None, move: int) -> CollisionScene | None:
         """The scene of a move; None where shapes are not known, which is noted once."""
         tool = self._program.moves[move].tool
-        parts = None if self._handling is None else self._handling.arrangements[move]
         if tool not in self._scenes:
             self._scenes[tool] = None
             try:
-                made = self._scenes[tool] = CollisionScene(self._cell, tool, parts)
+                made = CollisionScene(self._cell, tool) if scenes is None else scenes(tool, move)
+                self._scenes[tool] = made
                 self.notes += made.notes
             except InputError as error:
                 self.notes.append(Note(f"clearances are not known: {error}", move))
-        scene = self._scenes[tool]
-        if scene is None or parts is None:
-            return scene
-        if self._recent is None or self._recent[0] != tool or self._recent[1] is not parts:
-            self._recent = (tool, parts, scene.rearranged(parts))
-        return self._recent[2]
+        if self._scenes[tool] is None or scenes is None:
+            return self._scenes[tool]
+        return scenes(tool, move)
+
+
+def _rows_of(path: Path, chosen: BoolArray) -> FloatArray:
+    """Configurations along some of a path's samples, in small steps."""
+    return in_steps(path.q[chosen], path.states.dq[chosen], path.sigma[chosen])
 
 
 def in_steps(q: FloatArray, dq: FloatArray, sigma: FloatArray) -> FloatArray:

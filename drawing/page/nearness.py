@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ...core.collision.clearance import ClearanceMeter
 from ...core.motion.command.trajectory import Trajectory
+from ...core.motion.path.path import Path
 from .packing import Quantised, whole
 from .track_content import (
     PageClearance,
@@ -20,12 +23,16 @@ _STEP = 1e-5
 
 
 def page_clearance(
-    meter: ClearanceMeter, trajectory: Trajectory, wanted: float
+    meter: ClearanceMeter,
+    paths: Iterable[tuple[Path, int]],
+    trajectory: Trajectory,
+    wanted: float,
 ) -> PageClearance | None:
     """The clearance to the cell over time; None where nothing comes near.
 
     Args:
         meter: of the program in its cell.
+        paths: of the program's driven parts, and the index of the first move of each.
         trajectory: of the program.
         wanted: m, what the cell wants to be kept.
 
@@ -34,7 +41,7 @@ def page_clearance(
     """
     count = len(trajectory.t)
     rows = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(np.int64))
-    found = meter.along(trajectory.q[rows], trajectory.move[rows].tolist(), WITHIN)
+    found = meter.along(paths, trajectory.q[rows], trajectory.move[rows].tolist(), WITHIN)
     if not np.isfinite(found.distance).any():
         return None
     pairs = list(dict.fromkeys(pair for pair in found.pairs if pair is not None))

@@ -167,7 +167,8 @@ def _clearance(run: Run, cell: Cell | None, handling: Handling | None) -> PageCl
 
     try:
         meter = ClearanceMeter(cell, run.program, handling)
-        return page_clearance(meter, run.trajectory, cell.clearance)
+        paths = [(part.run.path, part.first) for part in run.parts]
+        return page_clearance(meter, paths, run.trajectory, cell.clearance)
     except FlybyError:
         return None  # The report says why clearances are not known.
 

@@ -151,7 +151,13 @@ def _release(
     earlier = EarlierReleases(
         feasibility,
         name,
-        scenes_along(member.cell, member.handling, lambda: member.run.path, member.cell.clearance),
+        scenes_along(
+            member.cell,
+            member.handling,
+            member.program,
+            lambda: member.run.path,
+            member.cell.clearance,
+        ),
         start_of(member.program),
         reread,
         outputs,
@@ -176,7 +182,13 @@ def _slow(
     found = Slowing(
         feasibility,
         share.name,
-        scenes_along(member.cell, member.handling, lambda: member.run.path, member.cell.clearance),
+        scenes_along(
+            member.cell,
+            member.handling,
+            member.program,
+            lambda: member.run.path,
+            member.cell.clearance,
+        ),
         setup.vendor.speaks,
         WaypointTask(
             keep=moves,

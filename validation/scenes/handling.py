@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Set
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -42,7 +42,11 @@ BESIDE = 0.01
 """m within which a part may be beside what it does not touch where it is taken or released."""
 APART = 0.018
 """m beyond the clearance, from where pairs surely count as apart."""
-ON, OFF = Opaque("grip on", True), Opaque("grip off", True)
+JUST_APART = 1.2e-3
+"""m beyond the clearance, from where a pair is not let go on the next move."""
+OFF = 1e-4
+"""m by which a part is farther from what it rests on at the end of a move that lifts it."""
+GRIP, OPEN = Opaque("grip on", True), Opaque("grip off", True)
 
 
 @dataclass(frozen=True)
@@ -151,11 +155,11 @@ class _Drawn:
             )
             room = TOP + self._tall + rng.uniform(0.1, ROOM)
             statements += self._there(x, y, room, grip)
-            statements += [ON, *self._away(x, y, room, grip)]
+            statements += [GRIP, *self._away(x, y, room, grip)]
             if self._turns and rng.random() < 0.7:
                 self._external = rng.uniform(-1.0, 1.0)
             statements += self._there(*put, room, grip + off)
-            statements += [OFF, *self._away(*put, room, grip + off)]
+            statements += [OPEN, *self._away(*put, room, grip + off)]
         return Program(tuple(statements))
 
     def _there(self, x: float, y: float, room: float, z: float) -> Iterator[Move]:
@@ -225,12 +229,43 @@ class Fault(NamedTuple):
     pair: tuple[str, str]
 
 
+class _MoveSamples(NamedTuple):
+    """Samples of one move.
+
+    Args:
+        move: its index.
+        q: (M, N).
+        scene, smaller: with the parts where they are, and smaller ones.
+        distance: (M, P) m.
+        least: (M, P) m, what pairs have to keep; written.
+    """
+
+    move: int
+    q: FloatArray
+    scene: CollisionScene
+    smaller: CollisionScene
+    distance: FloatArray
+    least: FloatArray
+
+    def row(self, pair: tuple[Body, Body]) -> int | None:
+        """The row of a pair of bodies that are at the same places here; None for none."""
+        for row, (a, b) in enumerate(self.scene.pairs):
+            bodies = self.scene.bodies[a], self.scene.bodies[b]
+            if all(
+                (x.name, x.frame, x.placement) == (y.name, y.frame, y.placement)
+                for x, y in zip(bodies, pair, strict=True)
+            ):
+                return row
+        return None
+
+
 def worst_fault(cell: Cell, handling: Handling, path: Path, clearance: float = 0.0) -> Fault:
     """Where a densely sampled path breaks the rules of parts most.
 
     Made apart from the proofs: the rules once more, pair by pair and sample by sample. A pair that
     touches where a part is taken or released keeps the clearance once it has surely been apart,
-    and is no deeper before than where it was taken or released; others always keep it.
+    and is no deeper before than where it was taken or released; others always keep it. A tool may
+    take several moves until it is apart, a part that is lifted all along, too.
 
     Args:
         cell: with its parts, and one tool.
@@ -238,46 +273,75 @@ def worst_fault(cell: Cell, handling: Handling, path: Path, clearance: float = 0
         path: with as many samples as wanted.
         clearance: m.
     """
-    moves, found = path.sample_moves(), list[Fault]()
+    moves = path.sample_moves()
     (tool,) = (tool for name, tool in cell.tools.items() if name in cell.tool_geometries)
     whole, small = (
         CollisionScene(cell, tool, handling.arrangements[0], by) for by in (0.0, RESTING)
     )
+    driven: list[_MoveSamples] = []
     for move in dict.fromkeys(moves.tolist()):
         q, parts = path.q[moves == move], handling.arrangements[move]
         scene, smaller = whole.rearranged(parts), small.rearranged(parts)
         distance = scene.distances(q, clearance + APART + 1e-3).distance.copy()
-        for row in range(len(scene.pairs)):
-            least = _least(scene, handling, move, row, distance[:, row], clearance)
-            bodies = [scene.bodies[k].solid for k in scene.pairs[row]]
-            deep = least < 0.0
-            if deep.any() and any(isinstance(solid, TriangleMesh) for solid in bodies):
-                # A depth into meshes is not known, but whether a smaller part would touch.
-                touch = smaller.of_pairs(scene.pairs[row : row + 1]).collides(q[deep])
-                distance[deep, row] = np.where(touch, -2.0 * RESTING, 0.0)
-            short = least - distance[:, row]
-            found.append(Fault(float(short.max()), move, scene.pair_names(row)))
+        least = np.full(distance.shape, float(clearance))
+        driven.append(_MoveSamples(move, q, scene, smaller, distance, least))
+    for k, samples in enumerate(driven):
+        _let_go(driven[k:], handling.before[samples.move], 1, clearance)
+        _let_go(driven[k::-1], handling.behind[samples.move], -1, clearance)
+    found: list[Fault] = []
+    for samples in driven:
+        for row in range(len(samples.scene.pairs)):
+            short = samples.least[:, row] - _judged(samples, row)
+            names = samples.scene.pair_names(row)
+            found.append(Fault(float(short.max()), samples.move, names))
     return max(found)
 
 
-def _least(
-    scene: CollisionScene,
-    handling: Handling,
-    move: int,
-    row: int,
-    distance: FloatArray,
-    clearance: float,
-) -> FloatArray:
-    """What a pair has to keep at each of M samples, m."""
-    least = np.full(len(distance), float(clearance))
-    first, second = (scene.bodies[k] for k in scene.pairs[row])
-    for end, names in ((0, handling.before[move]), (-1, handling.behind[move])):
-        floor = _floor(first, second, names, float(distance[end]), clearance)
-        if floor is not None:
-            way = 1 if end == 0 else -1
-            apart = np.logical_or.accumulate(distance[::way] >= clearance + APART)[::way]
+def _judged(samples: _MoveSamples, row: int) -> FloatArray:
+    """(M,) m of a pair; a depth into meshes is not known, but whether a smaller part touches."""
+    distance, deep = samples.distance[:, row].copy(), samples.least[:, row] < 0.0
+    bodies = [samples.scene.bodies[k].solid for k in samples.scene.pairs[row]]
+    if deep.any() and any(isinstance(solid, TriangleMesh) for solid in bodies):
+        smaller = samples.smaller.of_pairs(samples.scene.pairs[row : row + 1])
+        distance[deep] = np.where(smaller.collides(samples.q[deep]), -2.0 * RESTING, 0.0)
+    return distance
+
+
+def _let_go(ways: Sequence[_MoveSamples], names: Set[str], way: int, clearance: float) -> None:
+    """Lower what pairs have to keep that touch at one end of a move, until they are apart.
+
+    Args:
+        ways: the move, and those behind it, or before it.
+        names: of the parts that are handled at that end.
+        way: 1 for its beginning, -1 for its end.
+        clearance: m.
+    """
+    scene = ways[0].scene
+    for first in range(len(scene.pairs)):
+        bodies = scene.bodies[scene.pairs[first][0]], scene.bodies[scene.pairs[first][1]]
+        floor = _floor(*bodies, names, float(ways[0].distance[::way][0, first]), clearance)
+        if floor is None:
+            continue
+        drawn = BodyKind.HELD not in {body.kind for body in bodies}
+        row: int | None = first
+        for k, samples in enumerate(ways):
+            row = first if k == 0 else samples.row(bodies)
+            if row is None:
+                break
+            d, least = samples.distance[::way, row], samples.least[::way, row]
+            if k and not (drawn or _lifted(d, clearance)):
+                break
+            apart = np.logical_or.accumulate(d >= clearance + APART)
             least[~apart] = np.minimum(least[~apart], floor)
-    return least
+            if d.max() >= clearance + JUST_APART or not (drawn or d[-1] > d[0] + OFF):
+                break
+
+
+def _lifted(distance: FloatArray, clearance: float) -> bool:
+    """Whether a pair only gets farther from each other until it is apart."""
+    before = ~np.logical_or.accumulate(distance >= clearance + JUST_APART)
+    falls = bool(((np.diff(distance) < -OFF) & before[1:]).any())
+    return bool(distance[-1] > distance[0] + OFF) and not falls
 
 
 def _floor(

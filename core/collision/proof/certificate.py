@@ -6,7 +6,7 @@ See docs/reference/certificate.md for what is proven and how.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -86,7 +86,7 @@ def certify(
     Args:
         controller: that drove it.
         run: path and timing.
-        scenes: the scene of each move; see `scenes_of` and `handled_scenes`.
+        scenes: the scene of each move; see `scenes_of` and `HandledScenes`.
         clearance: m, wanted between all pairs that the scenes look at; what is proven may stay
             `TOLERANCE` below.
         residual: m by which a moving body may be elsewhere than the emulated motion says.
@@ -195,37 +195,51 @@ class _Proof:
                 yield self._of_part(part, owned, self.residual)
 
     def of_left_out(self, wanted: float) -> list[SceneFinding]:
-        """What is wrong with pairs that touch at an end of a move.
+        """What is wrong with pairs that touch at an end of a way.
 
         Args:
             wanted: m that they have to keep where they are apart.
         """
-        return [
-            finding
-            for part, touching, pieces in self._touching()
-            for finding in self._of_pairs(part, pieces, wanted).findings(touching, pieces)
-        ]
+        return [finding for proof in self._touching(wanted) for finding in proof.findings()]
 
     def never_apart(self, wanted: float) -> tuple[int, ...]:
-        """Indices of the moves all along which such pairs are near."""
-        path, found = self.run.path, dict[int, None]()
-        for part, touching, pieces in self._touching():
-            if self._of_pairs(part, pieces, wanted).never_apart(touching, pieces[0]):
-                found[path.route.moves[int(path.pieces.segment[pieces[0]])]] = None
-        return tuple(found)
+        """Indices of the moves of ways all along which such pairs are near."""
+        proofs = self._touching(wanted)
+        return tuple(sorted({i for proof in proofs if proof.never_apart() for i in proof.moves}))
 
-    def _touching(self) -> Iterator[tuple[tuple[int, int], TouchingPairs, list[int]]]:
-        """Parts of the path with the pairs that touch at the ends of a move, and its pieces."""
+    def _touching(self, wanted: float) -> Iterator[TouchingProof]:
+        """Proofs of the pairs that touch at the ends of each way."""
+        moves, segment = self.run.path.route.moves, self.run.path.pieces.segment
+        ways: dict[int, tuple[TouchingPairs, list[tuple[tuple[int, int], list[int]]]]] = {}
         for part in parts_of(self.run.path):
             for scene, pieces in self._owners(part):
-                if scene.left_out is not None:
-                    yield part, scene.left_out, pieces
+                for touching in scene.left_out:
+                    ways.setdefault(id(touching), (touching, []))[1].append((part, pieces))
+        for touching, places in ways.values():
+            of_way = {moves[int(segment[piece])] for _, pieces in places for piece in pieces}
+            yield TouchingProof(
+                touching,
+                self.run.path,
+                of_way,
+                self.spans,
+                self._provers_at(places),
+                self.residual,
+                wanted,
+            )
 
-    def _of_pairs(self, part: tuple[int, int], pieces: list[int], wanted: float) -> TouchingProof:
-        def provers(scene: CollisionScene, residual: float) -> list[Prover]:
-            return [prover for prover, _ in self._of_part(part, [(scene, pieces)], residual)]
+    def _provers_at(
+        self, places: Sequence[tuple[tuple[int, int], list[int]]]
+    ) -> Callable[[CollisionScene, float], list[tuple[Prover, list[int]]]]:
+        """Makes the provers of a scene at pieces of parts of the path."""
 
-        return TouchingProof(self.run.path, self.spans, provers, self.residual, wanted)
+        def made(scene: CollisionScene, residual: float) -> list[tuple[Prover, list[int]]]:
+            return [
+                prover
+                for part, pieces in places
+                for prover in self._of_part(part, [(scene, pieces)], residual)
+            ]
+
+        return made
 
     def _of_part(
         self,

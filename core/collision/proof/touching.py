@@ -1,9 +1,9 @@
-"""What is proven of pairs that touch at an end of a move: clear where apart, else not too deep."""
+"""What is proven of pairs that touch at an end of a way: clear where apart, else not too deep."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -38,30 +38,30 @@ class SceneFinding(NamedTuple):
 
 @dataclass(frozen=True)
 class TouchingProof:
-    """Proves pairs that touch at an end of one move.
+    """Proves pairs that touch at an end of one way.
 
     Args:
-        path: the move is on.
+        touching: the pairs.
+        path: the way is on.
+        moves: of the way, as far as they are looked at.
         spans: of the path, that are to be proven.
-        provers: make those of a scene, with a residual.
+        provers: make those of a scene, with a residual, and their pieces.
         residual: m.
         wanted: m that bodies keep where they are apart.
     """
 
+    touching: TouchingPairs
     path: Path
+    moves: Collection[int]
     spans: Sequence[Span]
-    provers: Callable[[CollisionScene, float], list[Prover]]
+    provers: Callable[[CollisionScene, float], list[tuple[Prover, list[int]]]]
     residual: float
     wanted: float
 
-    def findings(self, touching: TouchingPairs, pieces: Sequence[int]) -> list[SceneFinding]:
-        """What is not proven of them.
-
-        Args:
-            touching: the pairs.
-            pieces: of the move.
-        """
-        rows, distance = self._sampled(touching, pieces[0])
+    def findings(self) -> list[SceneFinding]:
+        """What is not proven of them."""
+        touching = self.touching
+        rows, distance = self._sampled()
         found: list[SceneFinding] = []
         left = np.arange(len(touching.floor))
         before: dict[int, list[SceneFinding]] = {}
@@ -75,7 +75,7 @@ class TouchingProof:
             for first, last, which in _alike(apart):
                 span = float(self.path.sigma[rows[first]]), float(self.path.sigma[rows[last]])
                 scene = touching.scene.of_pairs(touching.scene.pairs[left[which]])
-                met = self._prove(scene, self.residual, [span], pieces, self.wanted)
+                met = self._prove(scene, self.residual, [span], self.wanted)
                 # What is near again once it was apart is so, wherever apart is said to begin.
                 again[which] = bool(met) and slack < _SLACKS[-1] and not _near(met)
                 if again[which].any():
@@ -83,36 +83,28 @@ class TouchingProof:
                 else:
                     found += met
             done = ~again
-            found += self._too_deep(touching, left[done], _of(apart, done), rows, pieces)
+            found += self._too_deep(left[done], _of(apart, done), rows)
             left = left[again]
         return found
 
-    def never_apart(self, touching: TouchingPairs, piece: int) -> bool:
-        """Whether a pair is apart nowhere on the move that a piece belongs to."""
-        _, distance = self._sampled(touching, piece)
+    def never_apart(self) -> bool:
+        """Whether a pair is apart nowhere on the way."""
+        _, distance = self._sampled()
         limit = self.wanted + self.residual + APART
-        return bool(apart_rows(distance, limit, touching.floor).never.any())
+        return bool(apart_rows(distance, limit, self.touching.floor).never.any())
 
-    def _sampled(self, touching: TouchingPairs, piece: int) -> tuple[IntArray, FloatArray]:
-        """Rows of the path that are of one move, and the pairs' distances (M, K) there."""
-        segment = self.path.pieces.segment
-        rows = np.flatnonzero(segment[self.path.pieces.sample_pieces] == segment[piece])
+    def _sampled(self) -> tuple[IntArray, FloatArray]:
+        """Rows of the path that are of the way, and the pairs' distances (M, K) there."""
+        rows = np.flatnonzero(np.isin(self.path.sample_moves(), list(self.moves)))
         within = self.wanted + self.residual + _SLACKS[-1]
-        return rows, touching.scene.distances(self.path.q[rows], within).distance
+        return rows, self.touching.scene.distances(self.path.q[rows], within).distance
 
-    def _too_deep(
-        self,
-        touching: TouchingPairs,
-        left: IntArray,
-        apart: ApartRows,
-        rows: IntArray,
-        pieces: Sequence[int],
-    ) -> list[SceneFinding]:
+    def _too_deep(self, left: IntArray, apart: ApartRows, rows: IntArray) -> list[SceneFinding]:
         """Where pairs go deeper into each other than they may, before they are apart and behind.
 
         What the model's residual does there is left out: it is the emulated motion that touches.
         """
-        sigma = self.path.sigma[rows]
+        touching, sigma = self.touching, self.path.sigma[rows]
         asked: dict[tuple[float, float, float, bool], list[int]] = {}
         for row, first, last in zip(left.tolist(), *apart, strict=True):
             floor = touching.floor[row].tolist()
@@ -129,7 +121,7 @@ class TouchingProof:
             scene = touching.scene if touching.shrunk is None or not meshed else touching.shrunk
             alone = scene.of_pairs(scene.pairs[which])
             kept = CONTACT if meshed or least > 0.0 else least
-            met = self._prove(alone, 0.0, [(begin, end)], pieces, kept)
+            met = self._prove(alone, 0.0, [(begin, end)], kept)
             found += [finding._replace(wanted=least) for finding in met]
         return found
 
@@ -138,7 +130,6 @@ class TouchingProof:
         scene: CollisionScene,
         residual: float,
         stretches: Sequence[Span],
-        pieces: Sequence[int],
         wanted: float,
     ) -> list[SceneFinding]:
         asked = [
@@ -149,7 +140,8 @@ class TouchingProof:
         ]
         if not asked:
             return []
-        met = [prover.prove(asked, pieces, wanted) for prover in self.provers(scene, residual)]
+        provers = self.provers(scene, residual)
+        met = [prover.prove(asked, pieces, wanted) for prover, pieces in provers]
         return [SceneFinding(scene, stretch, wanted) for stretch in met if stretch is not None]
 
 

@@ -140,7 +140,7 @@ class VerdictReader:
             near: moves along which what touches at an end is never apart.
         """
         clearance = min((part.proven for part in known), default=math.inf)
-        parts = _of_parts(wanted, near, any(part.scene.left_out is not None for part in known))
+        parts = _of_parts(wanted, near, any(part.scene.left_out for part in known))
         if clearance == math.inf:
             message = "nothing is near that it could touch" + parts
             return Certificate(Verdict.PROVEN, clearance, message, measured=measured)

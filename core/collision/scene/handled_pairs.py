@@ -23,15 +23,22 @@ APART = 1e-3
 """m beyond what has to be kept, from which pairs that touched count as apart."""
 
 
-def set_aside(
-    scene: CollisionScene,
-    handling: Handling,
-    move: int,
-    ends: FloatArray,
-    clearance: float,
-    shrunk: Callable[[], CollisionScene],
-) -> CollisionScene:
-    """The scene without the pairs that may touch on a move: these are its ``left_out``.
+class AtHandling(NamedTuple):
+    """Pairs that may touch at an end of a move where parts are taken or released.
+
+    Args:
+        pairs: (K, 2), as indices of bodies.
+        floor: (K, 2) m, next to the move's beginning and to its end, see `TouchingPairs`.
+    """
+
+    pairs: IntArray
+    floor: FloatArray
+
+
+def pairs_at_handling(
+    scene: CollisionScene, handling: Handling, move: int, ends: FloatArray, clearance: float
+) -> AtHandling:
+    """The pairs that may touch at the ends of a move.
 
     That is the tool and a part that it takes at the move's end or has released at its beginning,
     and a part that is carried with what it rests on there. A part goes no deeper than `RESTING`
@@ -45,30 +52,37 @@ def set_aside(
         move: index in the program.
         ends: (2, N), where the move begins and ends.
         clearance: m, kept where pairs are apart.
-        shrunk: gives the same scene with parts smaller by `RESTING`.
     """
     at_end = handling.before[move], handling.behind[move]
     rows = _rows_of(scene, at_end[0] | at_end[1])
-    if not len(rows):
-        return scene
-    floor = np.stack(
-        [_floors(scene, rows, names, q, clearance) for names, q in zip(at_end, ends, strict=True)],
-        axis=1,
-    )
+    floors = [
+        _floors(scene, rows, names, q, clearance) for names, q in zip(at_end, ends, strict=True)
+    ]
+    floor = np.stack(floors, axis=1)
     chosen = np.isfinite(floor).any(axis=1)
-    rows, floor = rows[chosen], floor[chosen]
-    if not len(rows):
-        return scene
-    pairs = scene.pairs[rows]
+    return AtHandling(scene.pairs[rows[chosen]], floor[chosen])
+
+
+def touching_pairs(
+    scene: CollisionScene,
+    moves: tuple[int, int],
+    pairs: IntArray,
+    floor: FloatArray,
+    shrunk: Callable[[], CollisionScene],
+) -> TouchingPairs:
+    """Pairs (K, 2) of a scene that may touch at an end of a way.
+
+    Args:
+        scene: of one of the way's moves.
+        moves, floor: see `TouchingPairs`.
+        shrunk: gives the same scene with parts smaller by `RESTING`.
+    """
     meshed = np.array(
         [any(isinstance(scene.bodies[k].solid, TriangleMesh) for k in pair) for pair in pairs]
     )
     meshed &= (floor < 0.0).any(axis=1)
     smaller = shrunk().of_pairs(pairs) if meshed.any() else None
-    which = np.zeros(len(scene.pairs), dtype=np.bool_)
-    which[rows] = True
-    touching = TouchingPairs(scene.of_pairs(pairs), scene, floor, smaller, meshed)
-    return scene.leaving_out(which, touching)
+    return TouchingPairs(scene.of_pairs(pairs), moves, floor, smaller, meshed)
 
 
 def _rows_of(scene: CollisionScene, names: Set[str]) -> IntArray:
@@ -108,7 +122,7 @@ def _floors(
 
 
 class ApartRows(NamedTuple):
-    """Which of M samples along a move K pairs are apart at, from the first to the last.
+    """Which of M samples along a way K pairs are apart at, from the first to the last.
 
     Args:
         first, last: (K,); a pair that never comes apart has its first behind its last.
@@ -124,10 +138,10 @@ class ApartRows(NamedTuple):
 
 
 def apart_rows(distance: FloatArray, limit: float, floor: FloatArray) -> ApartRows:
-    """Where pairs that touch at an end of a move are apart.
+    """Where pairs that touch at an end of a way are apart.
 
     Args:
-        distance: (M, K) m, along the move.
+        distance: (M, K) m, along the way.
         limit: m, from which on they count as apart.
         floor: see `TouchingPairs`.
     """
@@ -140,13 +154,13 @@ def apart_rows(distance: FloatArray, limit: float, floor: FloatArray) -> ApartRo
 
 
 def counted_distances(touching: TouchingPairs, q: FloatArray, clearance: float) -> FloatArray:
-    """Signed distances (M, K) m at samples along a move, as far as they count; infinite elsewhere.
+    """Signed distances (M, K) m at samples along a way, as far as they count; infinite elsewhere.
 
     They do where pairs that were apart do not keep the clearance, and where they are deeper in each
     other than they may be.
 
     Args:
-        touching: pairs that may touch at an end of the move.
+        touching: pairs that may touch at an end of the way.
         q: (M, N), along all of it.
         clearance: m, kept where they are apart.
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from copy import copy
 from functools import cached_property
 from typing import NamedTuple
@@ -43,19 +43,19 @@ CHUNK = 256
 
 
 class TouchingPairs(NamedTuple):
-    """K pairs of bodies that may touch at an end of a move.
+    """K pairs of bodies that may touch at an end of a way: of a move, or of moves in a row.
 
     Args:
         scene: of these pairs alone.
-        whole: of all pairs, these among them.
+        moves: indices of the way's first and last move in the program.
         floor: (K, 2) m, signed distance that they keep at least where they touch, next to the
-            move's beginning and to its end; infinite where they may not touch.
+            way's beginning and to its end; infinite where they may not touch.
         shrunk: of these pairs alone, with smaller parts; None if it is not needed.
         meshed: (K,), which of them have a depth in ``shrunk`` alone, where they keep off.
     """
 
     scene: CollisionScene
-    whole: CollisionScene
+    moves: tuple[int, int]
     floor: FloatArray
     shrunk: CollisionScene | None
     meshed: NDArray[np.bool_]
@@ -76,8 +76,9 @@ class CollisionScene:
         exclusions: the pairs that are not, with reasons.
         frames: the frames that the bodies ride on.
         notes: what a user should know of shapes and pairs.
-        left_out: the pairs that are not looked at here, as they touch at an end of the move; None
-            for none.
+        left_out: the pairs that are not looked at here, as they touch at an end of a way that the
+            move is of.
+        whole: the scene with these, too.
 
     Raises:
         InputError: the robot has no shapes, the cell does not know the tool, a mesh cannot be
@@ -120,7 +121,8 @@ class CollisionScene:
             *notes,
             *robot_notes(cell.robot),
         )
-        self.left_out: TouchingPairs | None = None
+        self.left_out: tuple[TouchingPairs, ...] = ()
+        self.whole = self
         self._set_pairs(parts or ())
 
     def rearranged(self, parts: Arrangement) -> CollisionScene:
@@ -134,17 +136,15 @@ class CollisionScene:
         other._recent = RecentDistances()
         other._set_bodies(parts)
         other._set_pairs(parts)
+        other.whole = other
         return other
 
-    def leaving_out(self, which: NDArray[np.bool_], touching: TouchingPairs) -> CollisionScene:
-        """The same scene without some of its pairs.
-
-        Args:
-            which: (P,), of `pairs`.
-            touching: of these, for ``left_out`` of what is made.
-        """
-        other = self.of_pairs(self.pairs[~which])
-        other.left_out = touching
+    def leaving_out(self, touching: Sequence[TouchingPairs]) -> CollisionScene:
+        """The same scene without pairs of it, which are then its ``left_out``."""
+        gone = {(int(a), int(b)) for ways in touching for a, b in ways.scene.pairs}
+        kept = np.array([pair not in gone for pair in self._pairs], dtype=np.bool_)
+        other = self.of_pairs(self.pairs[kept])
+        other.left_out, other.whole = tuple(touching), self
         return other
 
     def of_pairs(self, pairs: NDArray[np.int64]) -> CollisionScene:
@@ -153,7 +153,7 @@ class CollisionScene:
         other._recent = RecentDistances()
         other.pairs = pairs
         other._pairs = [(int(a), int(b)) for a, b in pairs]
-        other.left_out = None
+        other.left_out, other.whole = (), other
         return other
 
     def _set_bodies(self, parts: Arrangement) -> None:

@@ -111,15 +111,15 @@ def beside_parts(task: WaypointTask, program: Program, path: Path, scenes: Scene
     limits: dict[int, PointLimit] = {}
     ways: set[int] = set()
     for k, i in enumerate(driven):
-        touching = scenes(moves[i].tool, i).left_out
-        if touching is None:
-            continue
-        ways.add(i)
-        leaving, coming = (_depth(touching, end) for end in (0, 1))
-        if leaving > RESTING:
-            limits[i] = Fixed(_SUNK.format(1e3 * leaving, "releases", "out of"))
-        if coming > RESTING and k:
-            limits[driven[k - 1]] = Fixed(_SUNK.format(1e3 * coming, "takes", "into"))
+        for touching in scenes(moves[i].tool, i).left_out:
+            ways.add(i)
+            if i < touching.moves[1]:
+                settled.setdefault(i, "what a part touches is not apart yet there")
+            leaving, coming = (_depth(touching, end) for end in (0, 1))
+            if leaving > RESTING:
+                limits[i] = Fixed(_SUNK.format(1e3 * leaving, "releases", "out of"))
+            if coming > RESTING and k:
+                limits[driven[k - 1]] = Fixed(_SUNK.format(1e3 * coming, "takes", "into"))
     return replace(task, settled=settled, ways=ways, limits=limits | dict(task.limits))
 
 

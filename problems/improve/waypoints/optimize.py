@@ -101,6 +101,7 @@ class _Optimization:
         self.scenes = scenes_along(
             self.cell,
             self.task.handling,
+            program,
             lambda: self.controller.plan(program, self.task.start),
             self._clearance + self.task.residual,
         )

@@ -162,17 +162,17 @@ def watch(
         places = np.flatnonzero(owned[segment] | owned[after])
         ends = scene.distances(stops, clearance).distance.min(axis=0, initial=clearance)
         found.append(WatchedPlaces(scene, places, np.clip(ends, least, clearance)))
-        if scene.left_out is not None:
-            places = np.flatnonzero(owned[segment] & owned[after])
-            order = np.lexsort(
-                (driver.places.share[places], part[places] >= count, segment[places])
-            )
-            k = np.flatnonzero(owned)
-            ends = first.path.segments.ends.q[[k[0], k[-1]], [0, 1]]
-            for touching in _touching(scene.left_out, clearance, places, order, ends):
-                q = first.q[places]
-                distance = touching.scene.distances(q, touching.most).distance
-                found.append(touching.as_given(q, distance))
+    touching = {id(pairs): pairs for scene in own for pairs in scene.left_out}
+    for pairs in touching.values():
+        owned = np.array([any(pairs is other for other in scene.left_out) for scene in own])
+        # In a zone at an end of the way they are apart, as in the other move's scene.
+        places = np.flatnonzero(owned[segment] & owned[after])
+        order = np.lexsort((driver.places.share[places], part[places] >= count, segment[places]))
+        k = np.flatnonzero(owned)
+        ends = first.path.segments.ends.q[[k[0], k[-1]], [0, 1]]
+        for made in _touching(pairs, clearance, places, order, ends):
+            q = first.q[places]
+            found.append(made.as_given(q, made.scene.distances(q, made.most).distance))
     return tuple(found)
 
 

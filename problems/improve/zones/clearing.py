@@ -130,12 +130,12 @@ class Clearing:
         deviation: FloatArray | None = None,
         residual: float = 0.0,
     ) -> None:
-        touching = scene.left_out
-        self._scene = scene if touching is None else touching.whole
-        self._touching: frozenset[tuple[str, str]] = frozenset()
-        if touching is not None:
-            apart = touching.scene
-            self._touching = frozenset(map(apart.pair_names, range(len(apart.pairs))))
+        self._scene = scene.whole
+        self._touching = frozenset(
+            touching.scene.pair_names(k)
+            for touching in scene.left_out
+            for k in range(len(touching.scene.pairs))
+        )
         self._wanted = max(clearance, LEAST) + residual
         deviations = deviation is not None and bool(np.any(deviation > 0.0))
         self._deviation = deviation if deviations else None

@@ -103,6 +103,7 @@ class _Maximization:
         self._scenes: SceneOf = scenes_along(
             cell,
             options.handling,
+            program,
             lambda: controller.plan(program, options.start),
             self._wanted + options.residual,
         )

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.collision.clearance import ClearanceMeter, nearest_of
-from flyby.core.collision.handled_scenes import handled_scenes
+from flyby.core.collision.handled_scenes import HandledScenes, PartScenes
 from flyby.core.collision.proof.certificate import TOLERANCE, certify
 from flyby.core.collision.proof.verdict import Verdict
 from flyby.core.handling.handling import handling_of
@@ -30,7 +30,7 @@ def test_nothing_is_proven_or_found_clear_that_dense_samples_contradict(seed, cl
     handling, run = handling_of(program, cell), controller.run(program)
     dense = Controller(find_vendor("ur"), cell.robot, controller.model, DENSE).plan(program)
     fault = worst_fault(cell, handling, dense, clearance)
-    scenes = handled_scenes(cell, handling, run.path, clearance)
+    scenes = HandledScenes(PartScenes(cell), handling, run.program, run.path, clearance)
     made = certify(controller, run, scenes, clearance)
     met = nearest_of(ClearanceMeter(cell, program, handling).over(run.path, 0))
     checked = all(x is None or not (x.overlaps or x.distance < clearance - 1e-5) for x in met)

@@ -13,7 +13,7 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry
 from flyby.core.cell.workpiece import Workpiece
 from flyby.core.collision.clearance import ClearanceMeter, nearest_of
-from flyby.core.collision.handled_scenes import handled_scenes
+from flyby.core.collision.handled_scenes import HandledScenes, PartScenes
 from flyby.core.collision.proof.certificate import certify
 from flyby.core.collision.proof.verdict import Certificate, Verdict, VerdictReader
 from flyby.core.handling.handling import handling_of
@@ -86,7 +86,7 @@ def trip(put: float = 0.1, lift: float = 0.3, zone=FINE, end: float = -0.2) -> P
 
 def proof(program: Program, cell: Cell, clearance: float = 0.0, **more) -> Certificate:
     handling, run = handling_of(program, cell), CONTROLLER.run(program)
-    scenes = handled_scenes(cell, handling, run.path)
+    scenes = HandledScenes(PartScenes(cell), handling, run.program, run.path, clearance)
     return certify(CONTROLLER, run, scenes, clearance, **more)
 
 
@@ -200,7 +200,9 @@ def test_what_is_apart_by_little_is_proven_there_or_nothing_is() -> None:
         smooth = replace(CONTROLLER.model, smoothing=(width,))
         controller = Controller(find_vendor("ur"), UR, smooth)
         handling, run = handling_of(program, cell), controller.run(program)
-        made = certify(controller, run, handled_scenes(cell, handling, run.path), 0.0)
+        made = certify(
+            controller, run, HandledScenes(PartScenes(cell), handling, run.program, run.path), 0.0
+        )
         assert made.verdict is verdict
     assert set(made.pair or ()) == {"crate", "floor"} and made.move == 2
 
@@ -211,3 +213,56 @@ def test_pairs_that_never_come_apart_are_named_where_nothing_else_is_near() -> N
     assert made.message.startswith("nothing is near that it could touch; a part, and what takes it")
     assert made.message.endswith("on move 3 they never are apart")
     assert reader.proven([], 1e-5, 0, 0.005).message == "nothing is near that it could touch"
+
+
+def retreat(*heights: float, grip: float = 0.07) -> Program:
+    """Puts the crate down, 30 mm in it, and draws back in moves to these heights."""
+    put, up = to(0.6, -0.2, grip), [to(0.6, -0.2, z) for z in heights]
+    there = (to(0.6, 0.2, 0.3), to(0.6, 0.2, grip), ON, to(0.6, 0.2, 0.3), to(0.6, -0.2, 0.3))
+    return Program((*there, put, OFF, *up))
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.004])
+def test_a_tool_draws_back_in_as_many_moves_as_it_takes(clearance: float) -> None:
+    """30 mm deep it is put down; 12 and 3 mm deep it stops on its way out."""
+    cell = replace(cell_with(FLOOR), clearance=clearance)
+    deep = Geometry(Cylinder(0.03, 0.1), Pose((0.0, 0.0, 0.05)))
+    cell = replace(cell, tool_geometries={"grip": deep})
+    program = retreat(0.088, 0.097, 0.3)
+    made = proof(program, cell, clearance)
+    assert made.proven and "never are" not in made.message
+    met = nearest_of(
+        ClearanceMeter(cell, program, handling_of(program, cell)).over(
+            CONTROLLER.run(program).path, 0
+        )
+    )
+    assert met[0] is not None and not met[0].overlaps and met[0].distance >= clearance
+    # Out of it sideways as deep as before is what nobody can forbid; deeper it does not go.
+    assert proof(retreat(0.088, 0.06, 0.3), cell, clearance).verdict is Verdict.VIOLATED
+    # Once it was out it must not come back.
+    back = proof(retreat(0.088, 0.13, 0.088), cell, clearance)
+    assert back.verdict is Verdict.VIOLATED and back.move == 7
+
+
+def test_a_tool_comes_to_a_part_in_as_many_moves_as_it_takes() -> None:
+    deep = Geometry(Cylinder(0.03, 0.1), Pose((0.0, 0.0, 0.05)))
+    cell = replace(cell_with(FLOOR), tool_geometries={"grip": deep})
+    program = Program((to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.09), to(0.6, 0.2, 0.07), ON))
+    assert proof(program, cell).proven
+    away = Program((*program.statements[:2], to(0.6, 0.2, 0.2), *program.statements[2:]))
+    made = proof(away, cell)
+    assert made.verdict is Verdict.VIOLATED and made.move == 1
+
+
+def test_a_part_is_lifted_a_little_first() -> None:
+    """3 mm above the floor it goes on up; across the floor it is too near."""
+    here, cell = (to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.1), ON, to(0.6, 0.2, 0.103)), cell_with(FLOOR)
+    made = proof(Program((*here, to(0.6, 0.2, 0.3))), cell, 0.005)
+    assert made.proven and "never are" not in made.message
+    across = proof(Program((*here, to(0.6, -0.2, 0.103))), cell, 0.005)
+    assert across.verdict is Verdict.VIOLATED and set(across.pair or ()) == {"crate", "floor"}
+    # Put down in two moves it is as well.
+    put = (to(0.6, -0.2, 0.103), to(0.6, -0.2, 0.1), OFF, to(0.6, -0.2, 0.3))
+    assert proof(Program((*here, to(0.6, 0.2, 0.3), to(0.6, -0.2, 0.3), *put)), cell, 0.005).proven
+    low = Program((*here, *put))
+    assert proof(low, cell, 0.005).verdict is Verdict.VIOLATED

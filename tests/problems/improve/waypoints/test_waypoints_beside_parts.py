@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.geometry import Geometry
 from flyby.core.cell.workpiece import Workpiece
-from flyby.core.collision.handled_scenes import handled_scenes
+from flyby.core.collision.handled_scenes import HandledScenes, PartScenes
 from flyby.core.collision.proof.certificate import certify, renumbered
 from flyby.core.collision.scene.scene import CollisionScene
 from flyby.core.errors import MotionError
@@ -161,7 +161,7 @@ def test_points_over_places_do_not_go() -> None:
     statements.insert(4, to(0.0, 0.3, Radius(0.01)))
     program, cell = Program(tuple(statements)), cell_of()
     run, handling = CONTROLLER.run(program), handling_of(program, cell)
-    scenes = handled_scenes(cell, handling, run.path)
+    scenes = HandledScenes(PartScenes(cell), handling, run.program, run.path)
     task = beside_parts(WaypointTask(handling=handling), program, run.path, scenes)
     best = Counted(run, certify(CONTROLLER, run, scenes, 0.0), 1.0, task)
     tried = []
@@ -181,3 +181,17 @@ def test_a_new_point_on_the_way_is_driven_with_what_is_carried_there() -> None:
     assert more.given == (0, 1, 2, 2, 3, 4, 5) and list(more.keep) == [5]
     fewer = more.renumbered(lambda k: None if k == 4 else k - (k > 4), 6)
     assert fewer.given == (0, 1, 2, 2, 4, 5) and list(fewer.keep) == [4]
+
+
+def test_points_at_which_what_touches_is_not_apart_stay() -> None:
+    """Put down 30 mm deep, the tool draws back by 10 mm first."""
+    statements = list(trip(TOP - 0.03).statements)
+    statements.insert(-1, to(-0.2, TOP - 0.02, Radius(0.002)))
+    program, cell = Program(tuple(statements)), cell_of()
+    run, handling = CONTROLLER.run(program), handling_of(program, cell)
+    scenes = HandledScenes(PartScenes(cell), handling, program, run.path)
+    task = beside_parts(WaypointTask(handling=handling), program, run.path, scenes)
+    assert certify(CONTROLLER, run, scenes, 0.0).proven
+    assert {5, 6} <= set(task.ways) and "not apart yet" in task.settled[5]
+    reasons = select(program, run.path, UR, task).reasons
+    assert reasons[5] == task.settled[5]
