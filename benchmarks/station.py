@@ -5,7 +5,8 @@
 ``crossing``: two robots whose tools cross one line, at one instant but for a signal; ``handshake``:
 the example of two robots, with the interlock that could be given back earlier; ``studs``: the
 example of four robots; ``four-robots``: 100 moves each, two facing pairs that share the middle
-under interlocks; the last two beside the same with a stop at every point;
+under interlocks; the last two beside the same with a stop at every point; ``four-robots-meshes``:
+those with welding guns that are meshes of 10 000 triangles, in convex parts that enclose them;
 ``random-pairs``: programs at random, proofs beside sampling at ten times the controller's rate.
 CPU time of the process, kernels compiled; emulation and bounds of deviation are not counted.
 """
@@ -23,8 +24,10 @@ import numpy as np
 from report import Figure, main
 
 from flyby.core.cell.floor import bare_cell
+from flyby.core.cell.geometry import Geometry
 from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
+from flyby.core.collision.scene.bodies import tool_like_solids
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
@@ -42,10 +45,10 @@ from flyby.core.station.interlocks import savings
 from flyby.core.station.orders import explore
 from flyby.core.station.station import RobotStation, StationRobot, Wire
 from flyby.tasks.station.opening import open_station
-from flyby.validation.scenes.four_robots import four_robots
+from flyby.validation.scenes.four_robots import four_robots, gun
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-CASES = ("crossing", "handshake", "studs", "four-robots", "random-pairs")
+CASES = ("crossing", "handshake", "studs", "four-robots", "four-robots-meshes", "random-pairs")
 JITTER = 0.05
 CLEARANCE = 0.01
 HOME = np.array([0.0, -1.2, 1.6, -1.9, -1.57, 0.0])
@@ -97,6 +100,15 @@ def four() -> Iterator[Figure]:
     stopping, its_actions = four_robots(stops=True)
     stops = StationClock(stopping, its_actions).run().duration
     yield from _figures("four-robots", station, actions, stops)
+
+
+def four_with_meshes() -> Iterator[Figure]:
+    """The same with guns that are meshes of 10 000 triangles."""
+    case, shape = "four-robots-meshes", Geometry(gun())
+    solids, _ = tool_like_solids("gun", shape)
+    yield Figure(case, "triangles", len(gun().faces), "")
+    yield Figure(case, "convex_parts", len(solids), "")
+    yield from _figures(case, *four_robots(shape=shape))
 
 
 def _figures(case: str, station, actions, stops: float | None = None) -> Iterator[Figure]:
@@ -225,7 +237,13 @@ def _sampled(prover: PairProver) -> float:
 
 def measure(case: str, pairs: int) -> Iterator[Figure]:
     """The figures of a case."""
-    jobs = {"crossing": crossing, "handshake": handshake, "studs": studs, "four-robots": four}
+    jobs = {
+        "crossing": crossing,
+        "handshake": handshake,
+        "studs": studs,
+        "four-robots": four,
+        "four-robots-meshes": four_with_meshes,
+    }
     yield from random_pairs(pairs) if case not in jobs else jobs[case]()
 
 

@@ -8,12 +8,13 @@ middle.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from ...core.cell.cell import Cell
-from ...core.cell.geometry import Geometry
+from ...core.cell.geometry import Geometry, Mesh
 from ...core.motion.emulator.controller import Controller
 from ...core.program.move import Move, MoveJ, MoveL, Opaque
 from ...core.program.program import Program
@@ -26,6 +27,8 @@ from ...core.robot.shape import Capsule
 from ...core.spatial.pose import Pose
 from ...core.station.actions import Action, actions_of
 from ...core.station.station import RobotStation, StationRobot, Wire
+from .clutter_shapes import circle, swept
+from .solids import tube
 
 ROBOT = "abb/irb6640-180-255"
 CLEARANCE = 0.01
@@ -37,6 +40,8 @@ _DOWN = (0.0, 1.0, 0.0, 0.0)
 _ABOVE = 0.15
 ROD = Tool("rod", Pose((0.0, 0.0, 0.3)))
 _SHAPE = Geometry(Capsule(0.05, 0.2), Pose((0.0, 0.0, 0.15)))
+_OPENING, _BOW, _STEPS = 0.11, 1.5 * math.pi, 125
+"""m, radius of a gun's bow; rad of it; rings of its mesh."""
 BASES = {
     "a": Pose((0.0, 0.0, 0.0)),
     "b": Pose((ACROSS, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)),
@@ -47,14 +52,22 @@ FIRST = ("a", "d")
 """Robots that reach over the middle first; those facing them wait until they have left it."""
 
 
+def gun() -> Mesh:
+    """A closed C of 10 000 triangles, as welding guns are, with the TCP at its lower jaw."""
+    along = np.linspace(0.0, _BOW, _STEPS)
+    curve = np.stack([np.sin(along), np.zeros(_STEPS), 1.0 - np.cos(along)], axis=1)
+    return tube("gun", swept(np.array([0.0, 0.0, 0.05]) + _OPENING * curve, circle(0.035)))
+
+
 def four_robots(
-    *, stops: bool = False, locked: bool = True
+    *, stops: bool = False, locked: bool = True, shape: Geometry = _SHAPE
 ) -> tuple[RobotStation, dict[str, tuple[Action, ...]]]:
     """The station, and what its programs do with signals.
 
     Args:
         stops: whether robots stop at every point, in place of zones of 50 mm.
         locked: whether the middle is held by signals; else programs only run.
+        shape: of the tools.
     """
     members, actions = {}, {}
     words = find_vendor("abb").speaks
@@ -68,7 +81,7 @@ def four_robots(
             "abb",
             CLEARANCE,
             tools={"rod": ROD},
-            tool_geometries={"rod": _SHAPE},
+            tool_geometries={"rod": shape},
             allowed=(("J2", "J4"), ("J4", "rod")),
         )
         members[name] = StationRobot(name, program, controller, cell, run)

@@ -132,6 +132,20 @@ def bound_measured(
             found.lower[k] = max(found.lower[k], _planar_gap(one, other, i, j, a, b, n))
 
 
+@njit(cache=True, error_model="numpy")
+def place_solids(
+    side: Side, intervals: IntArray, bodies: IntArray, R: FloatArray, p: FloatArray
+) -> None:
+    """Where the solids of bodies (K,) are at the middles of intervals (K,): written to (K, 3, 3)
+    and (K, 3) m."""
+    for k in range(intervals.size):
+        turned, at = solid_place(side, intervals[k], bodies[k])
+        for i in range(3):
+            p[k, i] = at[i]
+            for j in range(3):
+                R[k, i, j] = turned[3 * i + j]
+
+
 @lean
 def solid_place(side: Side, i: int, b: int) -> tuple[Rotation, Vector]:
     """Where the solid of a body is at the middle of an interval."""

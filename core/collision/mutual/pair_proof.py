@@ -21,7 +21,7 @@ from ..distance.coal_engine import CoalEngine
 from ..distance.containment import Nesting
 from ..distance.engine import BodyPoses
 from .interval_tree import interval_tree, near_pairs
-from .pair_bounds import PairBounds, bound_measured, bound_pairs, solid_place
+from .pair_bounds import PairBounds, bound_measured, bound_pairs, place_solids
 from .robot_motion import RobotMotion
 
 ROUNDING = 1e-6
@@ -174,22 +174,26 @@ class PairProver:
 
         What is so far apart that the two keep ``wanted`` m all along is not measured any further.
         """
-        for k in range(len(items)):
-            i, j, row = items[k]
-            a, b = self.pairs[row]
-            (Ra, pa), (Rb, pb) = (
-                solid_place(self.one.side, i, a),
-                solid_place(self.other.side, j, b),
+        sides, shift = (self.one.side, self.other.side), len(self.one.bodies)
+        placed, motion = [], np.zeros(len(items))
+        for column, side in enumerate(sides):
+            rows, bodies = (
+                np.ascontiguousarray(x) for x in (items[:, column], self.pairs[items[:, 2], column])
             )
-            R, p = np.empty((self._count, 3, 3)), np.empty((self._count, 3))
-            second = len(self.one.bodies) + b
-            R[a], R[second] = np.reshape(Ra, (3, 3)), np.reshape(Rb, (3, 3))
-            p[a], p[second] = pa, pb
-            motion = self.one.side.swept.motion[i, a] + self.other.side.swept.motion[j, b]
-            within = motion + wanted + ROUNDING
-            witness = self._engine.distance(int(a), int(second), BodyPoses(R, p), within)
+            turned, at = np.empty((len(items), 3, 3)), np.empty((len(items), 3))
+            place_solids(side, rows, bodies, turned, at)
+            placed.append((bodies + column * shift, turned, at))
+            motion += side.swept.motion[rows, bodies]
+        within = motion + wanted + ROUNDING
+        (first, Ra, pa), (second, Rb, pb) = placed
+        R, p = np.empty((self._count, 3, 3)), np.empty((self._count, 3))
+        asked = zip(first.tolist(), second.tolist(), within.tolist(), strict=True)
+        for k, (a, b, most) in enumerate(asked):
+            R[a], R[b], p[a], p[b] = Ra[k], Rb[k], pa[k], pb[k]
+            # Other places every time: the engine keeps what it makes of them.
+            witness = self._engine.distance(a, b, BodyPoses(R, p), most)
             if witness is None:
-                found.distance[k] = within
+                found.distance[k] = most
             else:
                 found.distance[k], found.normal[k] = witness.distance, witness.normal
 
