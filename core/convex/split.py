@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,12 +50,29 @@ def split(vertices: FloatArray, faces: NDArray[np.int64]) -> Split:
     if own is not None:
         told = f"its convex hull has {whole / own:.3g} times its volume"
     try:
-        parts = cover(vertices, faces, approximate_parts(vertices, faces))
+        proposed = tuple(part.tobytes() for part in _floats(approximate_parts(vertices, faces)))
+        parts = _covered(*_bytes_of(vertices, faces), proposed)
     except NotSplitError as error:
         return Split((used,), f"{told}; {error}")
     if not parts or sum(map(hull_volume, parts)) > (1.0 - HOLLOW) * whole:
         return Split((used,))
     return Split(tuple(parts))
+
+
+@lru_cache(maxsize=16)
+def _covered(corners: bytes, triangles: bytes, proposed: tuple[bytes, ...]) -> list[FloatArray]:
+    """Convex parts that enclose a mesh: several scenes ask for those of one tool."""
+    vertices = np.frombuffer(corners).reshape(-1, 3)
+    faces = np.frombuffer(triangles, dtype=np.int64).reshape(-1, 3)
+    return cover(vertices, faces, [np.frombuffer(part).reshape(-1, 3) for part in proposed])
+
+
+def _bytes_of(vertices: FloatArray, faces: NDArray[np.int64]) -> tuple[bytes, bytes]:
+    return np.asarray(vertices, dtype=float).tobytes(), np.asarray(faces, np.int64).tobytes()
+
+
+def _floats(parts: Sequence[FloatArray]) -> Iterator[FloatArray]:
+    return (np.asarray(part, dtype=float) for part in parts)
 
 
 def hull_volume(points: FloatArray) -> float:
