@@ -21,6 +21,7 @@ from typing import Protocol
 
 from ...errors import Span
 from ...program.origin import Origin, Ownership
+from ..text.quick import quick
 
 ELSEWHERE = -1
 """The reader that is no move."""
@@ -50,7 +51,7 @@ class Source(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class MovePart:
     """A part of a move (target, speed, zone) before all reads are known.
 

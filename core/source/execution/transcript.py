@@ -13,6 +13,7 @@ from ...program.origin import MoveOrigin
 from ...program.speed import Speed
 from ...program.target import PoseTarget
 from ...spatial.pose import Pose
+from ..text.quick import quick
 from .course import AnswerError, Course
 from .limits import EndlessError
 from .provenance import MovePart, Reads
@@ -22,7 +23,7 @@ _SHOWN = 4
 """Names that a note on kept statements lists."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class MoveParts:
     """The parts of a move before all reads of the run are known.
 

@@ -1,17 +1,18 @@
 """Nodes that the syntax trees of several languages have; a language's own tree adds the others.
 
-All are frozen. Nothing in a tree is evaluated or checked beyond its form; names are looked up as
+None is changed once it is made (`quick`). Nothing in a tree is evaluated or checked beyond its form; names are looked up as
 the language folds them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import cached_property
 from itertools import zip_longest
 
 from ...errors import SourceError, Span
+from .quick import quick
 
 
 class Composed:
@@ -62,26 +63,26 @@ class Expression(Composed):
         raise NotImplementedError
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Node:
     """What stands at a place of the text."""
 
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Term(Node, Expression):
     """An expression that keeps its place."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Text(Term):
     """A string."""
 
     value: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Unreadable(Term):
     """A value that cannot be read, in a text that is read all the same.
 
@@ -92,14 +93,14 @@ class Unreadable(Term):
     message: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Truth(Term):
     """``TRUE`` or ``FALSE``."""
 
     value: bool
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Unary(Term):
     """A sign or a word like ``not`` before an operand."""
 
@@ -111,7 +112,7 @@ class Unary(Term):
         return (self.operand,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Operation(Term):
     """Operators of one priority, evaluated from left to right: ``a + b - c``.
 
@@ -126,7 +127,7 @@ class Operation(Term):
         return (self.first, *(operand for _, operand in self.rest))
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Statement(Node):
     """What is carried out."""
 
@@ -136,7 +137,7 @@ class Statement(Node):
         return ()
 
 
-@dataclass(frozen=True)
+@quick(frozen=True)
 class Block:
     """Statements in order."""
 
@@ -155,7 +156,7 @@ class Block:
                 yield from inner.walk()
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Looping(Statement):
     """A block that is run again and again."""
 
@@ -166,14 +167,14 @@ class Looping(Statement):
         return (self.body,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class While(Looping):
     """A loop as long as a condition holds."""
 
     condition: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Case:
     """The values of a `Switch` for which a block is run."""
 
@@ -181,7 +182,7 @@ class Case:
     body: Block
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Switch(Statement):
     """One of several blocks, by the value of an expression: ``TEST``, ``SWITCH``."""
 
@@ -195,28 +196,28 @@ class Switch(Statement):
         return bodies if self.otherwise is None else [*bodies, self.otherwise]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Label(Statement):
     """Where a ``GOTO`` leads."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Goto(Statement):
     """A jump to a label."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Return(Statement):
     """The end of a routine, with or without a value."""
 
     value: Expression | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Unread(Statement):
     """What is no statement of the language, in a text that is read all the same.
 
@@ -236,7 +237,7 @@ class Unread(Statement):
         return SourceError(self.message, self.span)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Keyword(Statement):
     """A statement of which only the first word is kept, lower case."""
 

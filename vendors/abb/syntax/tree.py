@@ -7,10 +7,11 @@ looked up by ``name``, which is lower case.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ....core.source.text import nodes
 from ....core.source.text.nodes import Looping, Node, Term
+from ....core.source.text.quick import quick
 
 Block = nodes.Block
 Case = nodes.Case
@@ -29,14 +30,14 @@ Unreadable = nodes.Unreadable
 While = nodes.While
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Number(Term):
     """A number, with its sign if one stands before it."""
 
     value: float
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Aggregate(Term):
     """``[a, b, …]``: a record or an array."""
 
@@ -47,7 +48,7 @@ class Aggregate(Term):
         return self.items
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Packed(Term):
     """An `Aggregate` of nothing but numbers, two brackets deep at most: most of any program's text.
 
@@ -61,7 +62,7 @@ class Packed(Term):
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Name(Term):
     """A datum or a part of it: ``p10``, ``p10.trans.x``, ``path{3}``.
 
@@ -80,7 +81,7 @@ class Name(Term):
         return [index for step in self.path if not isinstance(step, str) for index in step]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Call(Term):
     """A function's value: ``Offs(p10, 0, 0, 50)``."""
 
@@ -93,12 +94,12 @@ class Call(Term):
         return [a.value for a in self.arguments if a.value is not None]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Star(Term):
     """``*`` for a position that is kept outside the text."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Argument(Node):
     """An argument of a routine.
 
@@ -115,7 +116,7 @@ class Argument(Node):
     parameter: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Assign(Statement):
     """``target := value;``"""
 
@@ -123,7 +124,7 @@ class Assign(Statement):
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Invoke(Statement):
     """A call of a procedure or an instruction: ``MoveL p10, v100, z10, tool0;``"""
 
@@ -132,7 +133,7 @@ class Invoke(Statement):
     arguments: tuple[Argument, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class LateInvoke(Statement):
     """A call of the procedure that a string names: ``%"part" + n%;``"""
 
@@ -140,7 +141,7 @@ class LateInvoke(Statement):
     arguments: tuple[Argument, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Branch:
     """Statements and the condition under which they run."""
 
@@ -148,7 +149,7 @@ class Branch:
     body: Block
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class If(Statement):
     """``IF … ELSEIF … ELSE … ENDIF``, or the compact ``IF condition statement``."""
 
@@ -161,7 +162,7 @@ class If(Statement):
         return bodies if self.otherwise is None else [*bodies, self.otherwise]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class For(Looping):
     """``FOR name FROM start TO stop STEP step DO … ENDFOR``"""
 
@@ -171,7 +172,7 @@ class For(Looping):
     step: Expression | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Keyword(nodes.Keyword):
     """A statement that is one word with, perhaps, an argument that is not read here.
 
@@ -187,7 +188,7 @@ class Keyword(nodes.Keyword):
     value: Expression | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Declaration(Node):
     """``[LOCAL] CONST|VAR|PERS type name{dimensions} := value;``
 
@@ -206,7 +207,7 @@ class Declaration(Node):
     local: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Parameter(Node):
     """A parameter of a routine.
 
@@ -226,7 +227,7 @@ class Parameter(Node):
     group: int
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Handler:
     """``ERROR`` or ``ERROR (number, …)`` at the end of a routine.
 
@@ -238,7 +239,7 @@ class Handler:
     body: Block
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Routine(Node):
     """A ``PROC``, ``FUNC`` or ``TRAP``.
 
@@ -260,7 +261,7 @@ class Routine(Node):
     local: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class RecordDefinition(Node):
     """``RECORD name … ENDRECORD``: component types and names, lower case."""
 
@@ -269,7 +270,7 @@ class RecordDefinition(Node):
     local: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class AliasDefinition(Node):
     """``ALIAS type name;``"""
 
@@ -278,7 +279,7 @@ class AliasDefinition(Node):
     local: bool = False
 
 
-@dataclass(frozen=True)
+@quick(frozen=True)
 class Module(Node):
     """``MODULE name … ENDMODULE``"""
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
 from ....core.source.text.arguments import wrong_count
+from ....core.source.text.quick import quick
 from ..syntax.tree import Expression, Invoke
 from .scope import Scope, unknown_name
 
@@ -19,7 +19,7 @@ class Numbers(Protocol):
         """See `Evaluator.number`."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Bound:
     """The arguments of one instruction.
 

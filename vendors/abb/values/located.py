@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ....core.source.text.quick import quick
 from .provenance import Literal
 from .scope import Variable
 from .types import Type, Value, find_unknown
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Located:
     """A value together with the place of the text that it was read from.
 

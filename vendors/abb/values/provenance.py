@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ....core.errors import Span
+from ....core.source.text.quick import quick
 from ..syntax.packed import number_spans, unpacked
 from ..syntax.tree import Aggregate, Expression, Number, Packed, Text, Truth
 from .types import Value
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Literal:
     """Where a value stands in the text: a `Source`.
 

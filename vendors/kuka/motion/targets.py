@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 
 from ....core.errors import InputError, LeftOpenError, SourceError, Span
@@ -16,6 +15,7 @@ from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.source.text.axis_values import arm_values
+from ....core.source.text.quick import quick
 from ..values.frames import pose_of
 from ..values.provenance import Sources
 from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS
@@ -34,7 +34,7 @@ _ROUNDED = 0.1
 """deg by which a program may round an axis that the controller sets, without a note."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class ReadTarget:
     """A target.
 

@@ -7,12 +7,12 @@ looked up by ``name``, which is lower case.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ....core.errors import Note, Span
 from ....core.source.text import nodes
 from ....core.source.text.files import SourceText
 from ....core.source.text.nodes import Looping, Term
+from ....core.source.text.quick import quick
 
 Block = nodes.Block
 Case = nodes.Case
@@ -31,7 +31,7 @@ Unread = nodes.Unread
 While = nodes.While
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Literal(Expression):
     """A literal, of which programs hold so many that only some are ever asked for their place."""
 
@@ -45,26 +45,26 @@ class Literal(Expression):
         return self.source.span(self.start, self.end)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Number(Literal):
     """A number, with its sign if one stands before it; an ``int`` if it is written as one."""
 
     value: int | float
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Constant(Term):
     """A constant of an enumeration, ``#BASE``; its name is lower case."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Flat(Literal):
     """An aggregate whose items are literals, kept as text until it is asked for."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Aggregate(Literal):
     """``{X 1,CM {X 0},POINT2[] " "}``: components by lower-case name, and perhaps a type."""
 
@@ -72,7 +72,7 @@ class Aggregate(Literal):
     items: tuple[tuple[str, Expression], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Name(Term):
     """A datum or a part of it: ``P1``, ``P1.X``, ``P[3]``, ``S[]``, ``TOOL_NAME[1,]``.
 
@@ -88,7 +88,7 @@ class Name(Term):
     path: tuple[str | tuple[Expression | None, ...], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Call(Term):
     """A function's value or the call of a routine; None is an argument left out."""
 
@@ -101,7 +101,7 @@ class Call(Term):
         return [argument for argument in self.arguments if argument is not None]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Ambiguous(Term):
     """A condition that means two things: ``A == 1 AND B == 2``.
 
@@ -118,7 +118,7 @@ class Ambiguous(Term):
         return (self.manual,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Assign(Statement):
     """``target = value``"""
 
@@ -126,14 +126,14 @@ class Assign(Statement):
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Invoke(Statement):
     """A call of a routine as a statement."""
 
     call: Call
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class MotionInstruction(Statement):
     """A motion instruction.
 
@@ -158,7 +158,7 @@ class MotionInstruction(Statement):
     passed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class If(Statement):
     """``IF … THEN … ELSE … ENDIF``"""
 
@@ -171,7 +171,7 @@ class If(Statement):
         return (self.body, self.otherwise)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class For(Looping):
     """``FOR counter = start TO stop STEP step … ENDFOR``"""
 
@@ -181,48 +181,48 @@ class For(Looping):
     step: Expression | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Repeat(Looping):
     """``REPEAT … UNTIL condition``"""
 
     condition: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Loop(Looping):
     """``LOOP … ENDLOOP``"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Exit(Statement):
     """``EXIT``: leave the innermost loop."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Halt(Statement):
     """``HALT``"""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Continue(Statement):
     """``CONTINUE``: the next statement does not stop the advance run."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class WaitSec(Statement):
     """``WAIT SEC time``"""
 
     time: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class WaitFor(Statement):
     """``WAIT FOR condition``"""
 
     condition: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Trigger(Statement):
     """``TRIGGER WHEN DISTANCE=0 DELAY=0 DO action``, ``TRIGGER WHEN PATH=… DELAY=… DO action``
 
@@ -241,7 +241,7 @@ class Trigger(Statement):
     action: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class SplineBlock(Statement):
     """``SPLINE … ENDSPLINE``, ``PTP_SPLINE … ENDSPLINE``
 
@@ -255,7 +255,7 @@ class SplineBlock(Statement):
     body: tuple[Statement, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Declaration(Statement):
     """``[GLOBAL] [DECL] [CONST] type name[dimensions] = value``, one for each name.
 
@@ -273,7 +273,7 @@ class Declaration(Statement):
     value: Expression | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class SignalDeclaration(Statement):
     """``SIGNAL name $IN[1] TO $IN[4]``"""
 
@@ -283,7 +283,7 @@ class SignalDeclaration(Statement):
     last: Name | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class StrucDefinition(Statement):
     """``STRUC name REAL A, B, INT C[3]``: components as (type, name, number of dimensions)."""
 
@@ -291,7 +291,7 @@ class StrucDefinition(Statement):
     components: tuple[tuple[str, str, int], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class EnumDefinition(Statement):
     """``ENUM name A, B``"""
 
@@ -299,7 +299,7 @@ class EnumDefinition(Statement):
     constants: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Parameter:
     """A parameter of a routine: ``name:IN`` or ``name:OUT``; lower case."""
 
@@ -307,7 +307,7 @@ class Parameter:
     by_reference: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@quick(frozen=True, slots=True, eq=False)
 class Routine:
     """A ``DEF`` or ``DEFFCT``.
 
@@ -325,7 +325,7 @@ class Routine:
     shared: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@quick(frozen=True, slots=True, eq=False)
 class DataList:
     """A ``DEFDAT``."""
 
@@ -336,7 +336,7 @@ class DataList:
     body: Block
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@quick(frozen=True, slots=True, eq=False)
 class Unit:
     """What one file holds.
 

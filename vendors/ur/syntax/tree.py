@@ -6,12 +6,12 @@ Nothing here is evaluated or checked beyond its form. Offsets are those of `text
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from ....core.source.text.nodes import Composed
+from ....core.source.text.quick import quick
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Node:
     """What stands between two offsets."""
 
@@ -19,12 +19,12 @@ class Node:
     end: int
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Expression(Node, Composed):
     """What has a value, or is called."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Statement(Node):
     """What is carried out."""
 
@@ -34,7 +34,7 @@ class Statement(Node):
         return ()
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Unread(Statement):
     """What is no statement, in a text that is read all the same.
 
@@ -49,28 +49,28 @@ class Unread(Statement):
     target: Name | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Number(Expression):
     """A number, with its sign if one stands before it."""
 
     value: int | float
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Text(Expression):
     """A string."""
 
     value: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Constant(Expression):
     """``True``, ``False`` or ``None``."""
 
     value: bool | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Numbers(Expression):
     """``[1, -2.5]`` or ``p[…]`` of nothing but numbers.
 
@@ -85,7 +85,7 @@ class Numbers(Expression):
     pose: bool
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Aggregate(Expression):
     """``[a, b, …]`` or ``p[a, b, …]``."""
 
@@ -97,14 +97,14 @@ class Aggregate(Expression):
         return self.items
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Name(Expression):
     """A variable."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Index(Expression):
     """``base[i]`` or ``base[i, j]``."""
 
@@ -116,7 +116,7 @@ class Index(Expression):
         return (self.base, *self.indices)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Member(Expression):
     """``base.name``: a part of a struct."""
 
@@ -128,7 +128,7 @@ class Member(Expression):
         return (self.base,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Argument(Node):
     """An argument of a call; ``name`` is None unless it is given as ``name=value``."""
 
@@ -136,7 +136,7 @@ class Argument(Node):
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Call(Expression):
     """``name(arguments)``; the closing bracket is the last character."""
 
@@ -148,7 +148,7 @@ class Call(Expression):
         return [a.value for a in self.arguments]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class MethodCall(Expression):
     """``base.name(arguments)``: of a list, or a remote procedure."""
 
@@ -161,7 +161,7 @@ class MethodCall(Expression):
         return [self.base, *(a.value for a in self.arguments)]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class StartThread(Expression):
     """``run name(arguments)``: starts a thread."""
 
@@ -172,7 +172,7 @@ class StartThread(Expression):
         return (self.call,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Unary(Expression):
     """``-``, ``+``, ``~`` or ``not`` before an operand."""
 
@@ -184,7 +184,7 @@ class Unary(Expression):
         return (self.operand,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Operation(Expression):
     """Operators of one priority, evaluated from left to right: ``a + b - c``.
 
@@ -203,7 +203,7 @@ Place = Name | Index | Member
 """What can be assigned."""
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Assign(Statement):
     """``target = value``; ``storage`` is ``global``, ``local`` or empty."""
 
@@ -212,14 +212,14 @@ class Assign(Statement):
     storage: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Evaluate(Statement):
     """An expression as a statement: a call."""
 
     expression: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Branch:
     """Statements and the condition under which they run."""
 
@@ -227,7 +227,7 @@ class Branch:
     body: Block
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class If(Statement):
     """``if … elif … else … end``"""
 
@@ -240,7 +240,7 @@ class If(Statement):
         return bodies if self.otherwise is None else [*bodies, self.otherwise]
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class While(Statement):
     """``while condition: … end``"""
 
@@ -252,21 +252,21 @@ class While(Statement):
         return (self.body,)
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Return(Statement):
     """``return`` with or without a value."""
 
     value: Expression | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Keyword(Statement):
     """``break``, ``continue``, ``halt``, ``pass``, ``enter_critical`` or ``exit_critical``."""
 
     word: str
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class ThreadEnd(Statement):
     """``join handle`` or ``kill handle``."""
 
@@ -274,7 +274,7 @@ class ThreadEnd(Statement):
     handle: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Parameter:
     """A parameter of a function; ``default`` is None if it must be given."""
 
@@ -282,7 +282,7 @@ class Parameter:
     default: Expression | None
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Define(Statement):
     """``def``, ``sec`` or ``thread``: ``kind name(parameters): … end``."""
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from ....core.source.text.quick import quick
 from .provenance import Sources
 from .values import Value
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Located:
     """A value together with the places of the text that it was read from.
 

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 
 from ....core.errors import Span
 from ....core.source.execution.provenance import ELSEWHERE, Reads
+from ....core.source.text.quick import quick
 from ..syntax.texts import Texts
 from ..syntax.tree import Constant, Expression, Number, Numbers, Text
 
 
-@dataclass(frozen=True, slots=True)
+@quick(frozen=True, slots=True)
 class Literal:
     """Where a value stands in the text: a `Source`.
 
