@@ -7,6 +7,7 @@ import fcntl
 import logging
 import os
 import shutil
+import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -26,6 +27,13 @@ from .journal import (
 
 _log = logging.getLogger("flyby")
 
+_CLEAN: dict[tuple[int, int], tuple[int, int]] = {}
+"""Folders without what a write has left, and when they were changed: a folder of hundreds of files
+is not looked through for each of them."""
+_MOST_CLEAN = 10_000
+_STEADY = 3 * 10**9
+"""ns after which a folder that is changed again has another time, on any disk."""
+
 
 def recover(folder: Path) -> None:
     """Finish or take back what an interrupted write has left in a folder, and clean up after it.
@@ -34,10 +42,18 @@ def recover(folder: Path) -> None:
         InputError: neither can be done; the message says which files are concerned.
     """
     try:
+        state = os.stat(folder)
+        place, changed = (state.st_dev, state.st_ino), (state.st_mtime_ns, state.st_ctime_ns)
+        if _CLEAN.get(place) == changed:
+            return
         with os.scandir(folder) as found:
             names = sorted(entry.name for entry in found if entry.name.startswith(PREFIX))
     except (OSError, ValueError):
         return
+    if not names and time.time_ns() - max(changed) > _STEADY:
+        if len(_CLEAN) == _MOST_CLEAN:
+            _CLEAN.clear()
+        _CLEAN[place] = changed
     for name in names:
         try:
             _recover(folder / name)

@@ -242,3 +242,32 @@ def test_a_branch_is_followed_into_files_beside_the_program(vendor: str, tmp_pat
     (tmp_path / {"abb": "w.mod", "kuka": "rwork.src"}[vendor]).write_text(beside, "utf-8")
     program = find_vendor(vendor).read_file(tmp_path / FILES[vendor])
     assert len(program.moves) == 1
+
+
+COMPOSED = {
+    "abb": (
+        "p := Offs(getPoint(1), getShift(n), 0, 0);\nMoveL p,v100,fine,tool0;\n"
+        "MoveL Offs(CRobT(), 0, getShift(2), 0),v100,fine,tool0;",
+        {"getPoint(1)": "robtarget", "getShift(n)": "number", "getShift(2)": "number"},
+    ),
+    "kuka": (
+        "LIN_REL {Z getShift(1)}\nIF isDone(getPart(), 2) THEN\nGO\nENDIF",
+        {"getShift(1)": "", "isDone(getPart(), 2)": ""},
+    ),
+    "ur": (
+        "if count(get_part(n)) > 1:\nGO\nend\nother = get_part(n)",
+        {"count(get_part(n))": "number", "get_part(n)": ""},
+    ),
+}
+
+
+@pytest.mark.parametrize("vendor", VENDORS)
+def test_what_comes_of_other_things_that_are_asked_is_not_asked_as_well(vendor: str) -> None:
+    body, asked = COMPOSED[vendor]
+    text = WHOLE[vendor].replace("BODY", f"{GO[vendor]}\n{body}".replace("GO", GO[vendor]))
+    text = text.replace("VAR num part;", "VAR robtarget p;")
+    program = read(vendor, text, Answers())
+    found = {q.key: q.type for q in program.questions if q.table == "values"}
+    found.pop("CRobT()", None)
+    assert {name: found.get(name, "not asked") for name in asked} == asked
+    assert found.keys() == asked.keys()

@@ -135,6 +135,18 @@ class Course:
         """What was asked is known after all, and not listed."""
         self._questions.pop(("values", key(text)), None)
 
+    def lists(self, text: str) -> bool:
+        """Whether a name or call is among what was asked."""
+        return ("values", key(text)) in self._questions
+
+    def needless(self, text: str) -> None:
+        """What was asked just now is needed for nothing but what is asked itself: an argument of
+        a call. It is not listed, unless it was asked before."""
+        place = "values", key(text)
+        asked = self._questions.get(place)
+        if asked is not None and asked.count == 1 and not asked.answered:
+            del self._questions[place]
+
     def questions(self) -> tuple[Question, ...]:
         """What the program has asked, in the order in which it came up."""
         return tuple(self._questions.values())

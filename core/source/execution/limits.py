@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ...door import at_command_line, given
 from ...errors import SourceError, Span
 
 Executed = Callable[[Span], None]
@@ -29,7 +30,10 @@ class ExecutionLimits:
     calls: int = 40
 
 
-_REMEDY = "Give it an end, choose a routine without it as the entry, or raise the limit"
+def _remedy() -> str:
+    """What helps; the limits are raised where the reader is called, and not at the command."""
+    raised = "" if at_command_line() else ", or give the reader higher ones: ReadOptions(limits=…)"
+    return f"Give it an end, or choose a routine without it ({given('entry', 'NAME')}){raised}"
 
 
 class EndlessError(SourceError):
@@ -114,7 +118,7 @@ class Meter:
         )
         error = EndlessError(
             f"{words} {left}, with {moves:.3g} moves each: more than the {self._limits.repeats} "
-            f"passes or {self._limits.moves} moves that are read. {_REMEDY}",
+            f"passes or {self._limits.moves} moves that are read. {_remedy()}",
             span,
         )
         error.loop, error.foreseen = span, True
@@ -141,6 +145,6 @@ class Meter:
 
 def _endless(what: str, span: Span) -> EndlessError:
     return EndlessError(
-        f"{what} and the program has not ended: a loop without end? {_REMEDY}",
+        f"{what} and the program has not ended: a loop without end? {_remedy()}",
         span,
     )

@@ -1,7 +1,7 @@
 """Nodes that the syntax trees of several languages have; a language's own tree adds the others.
 
-None is changed once it is made (`quick`). Nothing in a tree is evaluated or checked beyond its form; names are looked up as
-the language folds them.
+None is changed once it is made (`quick`). Nothing in a tree is evaluated or checked beyond its
+form; names are looked up as the language folds them.
 """
 
 from __future__ import annotations

@@ -247,6 +247,23 @@ def test_a_misshapen_journal_is_said(tmp_path: Path, text: str) -> None:
         recover(tmp_path)
 
 
+def test_a_folder_that_nothing_has_changed_is_looked_through_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lay(tmp_path)
+    looked: list[object] = []
+    scan = os.scandir
+    monkeypatch.setattr("flyby.core.files.recovery.time.time_ns", lambda: 2**62)
+    monkeypatch.setattr(os, "scandir", lambda place: looked.append(place) or scan(place))
+    recover(tmp_path / "a")
+    recover(tmp_path / "a")
+    assert looked == [tmp_path / "a"]
+    left = tmp_path / "a" / f"{PREFIX}late"
+    left.mkdir()
+    recover(tmp_path / "a")
+    assert not left.exists()
+
+
 def test_in_place_killed_between_dat_and_src_leaves_nothing_unproven(tmp_path: Path) -> None:
     """As the command line writes, in a process of its own, and read by the next one."""
     dat, src = tmp_path / "p.dat", tmp_path / "p.src"

@@ -213,7 +213,8 @@ class _MoveReader:
                 if known is not None:
                     self.run.course.withdraw(expression.text)
             if nominal(found.value, type_) is None:
-                answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
+                kind_ = evaluator.answers.kind_of(unknown, expression.span)
+                answer = evaluator.answers.ask(expression.span, type_, kind=kind_)
                 if answer is not None:
                     return Located(answer, None, None, type=type_)
                 if isinstance(expression, Name):

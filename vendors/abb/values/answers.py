@@ -138,6 +138,12 @@ class TypedAnswers:
         if example is not None and value.key == self.key(expression.span):
             self._course.used_as(value.key, type_in_words(type_), example)
 
+    def kind_of(self, unknown: Unknown, span: Span) -> QuestionKind | None:
+        """What the expression at a place asks for; None if it comes of something else that is
+        asked."""
+        derived = unknown.key != self.key(span) and self._course.lists(unknown.key)
+        return None if derived else QuestionKind.DATUM
+
     def assumed(self, span: Span, message: str) -> None:
         """Note what is taken where there is no answer."""
         self._course.decided(span, message, listed=False)

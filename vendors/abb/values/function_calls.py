@@ -154,6 +154,8 @@ def _computed(evaluator: Evaluates, call: Call, scope: Scope) -> Value:
         values.append(0.0 if expression is None else evaluator.evaluate(expression, scope))
     unknown = find_unknown(tuple(values))
     if unknown is not None:
+        for expression_, value, type_ in zip(required, values, types, strict=False):
+            evaluator.answers.used_as(expression_, value, type_)
         kinds = (*types, *[NUM] * len(options))
         known = [nominal(value, kind) for value, kind in zip(values, kinds, strict=True)]
         return carried(unknown, lambda: _of_defaults(function, known))

@@ -255,4 +255,7 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
         "if it moved nothing: name the file that defines it, or say that it is so by [calls] "
         f'"{name}" = "skip"',
     )
+    for argument, value in zip(node.arguments, values, strict=True):
+        if isinstance(value, Unknown) and value.key == run.texts.text_of(argument.value):
+            run.course.needless(value.key)
     return run.keep(node, _MISSING, name)

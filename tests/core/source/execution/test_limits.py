@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from flyby.core.door import Shell, command_line
 from flyby.core.errors import SourceError, Span
 from flyby.core.source.execution.limits import ExecutionLimits, Meter
 
@@ -57,3 +58,13 @@ def test_one_move_is_not_repeated_for_ever(lines: list[int], repeats: int) -> No
                 meter.move(span)
             return
         meter.move(span)
+
+
+def test_the_remedy_is_one_where_the_program_is_read() -> None:
+    with pytest.raises(SourceError, match=r"\(entry=NAME\), or .*ReadOptions\(limits=…\)$"):
+        Meter(ExecutionLimits(repeats=0)).move(SPAN)
+    with (
+        command_line(Shell({}, {})),
+        pytest.raises(SourceError, match=r"without it \(--entry NAME\)$"),
+    ):
+        Meter(ExecutionLimits(repeats=0)).move(SPAN)
