@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,12 +14,26 @@ from ...robot.seven_axes.arm_angle import settle, wrapped
 from ...spatial.pose import Pose
 from ...spatial.rotation import matrix_from_rotation_vector, rotation_vector
 
+_THIRD = 2
+"""Of the axes from base to flange."""
 _STEP_LENGTH, _STEP_TURN = 0.02, 0.05
 """m, and rad of the flange and the arm angle, of a step on the way."""
 
 
-def followed(robot: Robot, flange: Pose, wanted: float, q: FloatArray) -> FloatArray | None:
-    """The configuration (N,) that an arm reaches from another one without a jump.
+class Followed(NamedTuple):
+    """Where an arm is led.
+
+    Args:
+        q: (N,), its configuration there.
+        apart: rad by which its third axis is elsewhere on the way than if it turned evenly.
+    """
+
+    q: FloatArray
+    apart: float
+
+
+def followed(robot: Robot, flange: Pose, wanted: float, q: FloatArray) -> Followed | None:
+    """The configuration that an arm reaches from another one without a jump.
 
     The flange goes straight, and the arm angle the shorter way round.
 
@@ -43,13 +58,17 @@ def followed(robot: Robot, flange: Pose, wanted: float, q: FloatArray) -> FloatA
     length = float(np.linalg.norm(p - first_p))
     steps = math.ceil(max(length / _STEP_LENGTH, turned / _STEP_TURN, 1.0))
     arm = q[:size].copy()
+    third = np.empty(steps + 1)
+    third[0] = arm[robot.along[_THIRD]]
     for k in range(1, steps + 1):
         share = k / steps
         here = np.ascontiguousarray(first_R @ matrix_from_rotation_vector(share * turn))
         at = first_p + share * (p - first_p)
         if not settle(robot.arm_chain, angle, here, at, before + share * change, arm):
             return None
+        third[k] = arm[robot.along[_THIRD]]
     lower, upper = robot.limits.lower[:size], robot.limits.upper[:size]
     if np.any(arm < lower) or np.any(arm > upper):
         return None
-    return np.concatenate([arm, q[size:]])
+    evenly = np.linspace(third[0], third[-1], steps + 1)
+    return Followed(np.concatenate([arm, q[size:]]), float(np.abs(third - evenly).max()))

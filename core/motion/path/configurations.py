@@ -63,6 +63,8 @@ class ConfigurationFinder:
             and what there is to say.
         tolerated: the same for those whose configuration the controller takes all the same.
         ambiguous: the same for those whose configuration does not tell postures of the arm apart.
+        uneven: index of each move that is led to an arm angle, and rad by which the third axis
+            would be elsewhere on the way if that angle turned evenly.
         solved: indices of the axes that inverse kinematics solves for along moves of the TCP;
             six if the arm can follow them.
         prescribed: indices of the others: external axes, and the redundant one of seven.
@@ -74,6 +76,7 @@ class ConfigurationFinder:
         self.departures: dict[int, str] = {}
         self.tolerated: dict[int, str] = {}
         self.ambiguous: dict[int, str] = {}
+        self.uneven: dict[int, float] = {}
         self._label = label
         redundant = [robot.along[_THIRD]] if robot.arm_size == 7 else []
         arm = range(robot.arm_size)
@@ -148,7 +151,8 @@ class ConfigurationFinder:
             flange = self.flange(move, target.pose, q)
             reached = followed(self._robot, flange, target.arm_angle, q)
             if reached is not None:
-                return reached
+                self.uneven[index] = reached.apart
+                return reached.q
         return self.choose(replace(move, target=replace(target, configuration=None)), index, before)
 
     def starts(self, move: Move, index: int) -> FloatArray:

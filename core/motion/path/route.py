@@ -118,6 +118,7 @@ class RouteFinder:
         self._targets.departures.clear()
         self._targets.tolerated.clear()
         self._targets.ambiguous.clear()
+        self._targets.uneven.clear()
         q = self._start(program, start, notes)
         legs = RouteLegs(0 if notes else None)
         for stage in self._stages(moves, skipped):
@@ -315,7 +316,7 @@ class RouteFinder:
         passed = legs.passed(keep, waypoints, notes)
         notes += half_turns(segments, keep, legs.moves, self._follower.turned)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
-        notes += arm_angle_notes(self._robot, program, legs.led)
+        notes += arm_angle_notes(self._robot, program, legs.led, self._targets.uneven)
         for move, said in self._targets.departures.items():
             target = program.moves[move].target
             assert isinstance(target, PoseTarget)

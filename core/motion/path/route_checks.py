@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -135,13 +135,16 @@ def half_turns(
     ]
 
 
-def arm_angle_notes(robot: Robot, program: Program, led: Sequence[int]) -> list[Note]:
+def arm_angle_notes(
+    robot: Robot, program: Program, led: Sequence[int], uneven: Mapping[int, float]
+) -> list[Note]:
     """What is assumed where targets state arm angles.
 
     Args:
         led: indices of the moves of the TCP to one.
+        uneven: see `ConfigurationFinder`.
     """
-    notes = [Note(_THIRD_EVENLY, move) for move in led[:1]]
+    notes = [Note(_THIRD_EVENLY + _apart(program, uneven), move) for move in led[:1]]
     through = (
         i
         for i, move in enumerate(program.moves)
@@ -153,6 +156,19 @@ def arm_angle_notes(robot: Robot, program: Program, led: Sequence[int]) -> list[
     if first is not None and origin.startswith("assumed"):
         notes.append(Note(f"what arm angles of {robot.name} count from is {origin}", first))
     return notes
+
+
+def _apart(program: Program, uneven: Mapping[int, float]) -> str:
+    """By how much it would be elsewhere if the arm angle turned evenly instead."""
+    worst = max(uneven, key=lambda i: uneven[i], default=None)
+    if worst is None:
+        return ""
+    at = program.moves[worst].statement
+    where = "" if at is None or len(uneven) == 1 else f" in line {at.line}"
+    return (
+        f"; if the arm angle turned evenly, it would be up to {math.degrees(uneven[worst]):.1f}° "
+        f"elsewhere on the way{where}"
+    )
 
 
 def _states_one(move: Move) -> bool:

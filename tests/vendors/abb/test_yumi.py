@@ -115,6 +115,7 @@ def test_lines_end_with_the_arm_angle_of_their_target(read) -> None:
         np.testing.assert_allclose(at, target.pose.matrix(), atol=1e-9)
     said = [note for note in run.notes if "third axis turns evenly" in note.message]
     assert len(said) == 1 and said[0].move == 1
+    assert re.search(r"up to 1\.\d° elsewhere on the way in line 10$", said[0].message)
     assert not [note for note in run.notes if "count from" in note.message]
 
 

@@ -387,6 +387,19 @@ def test_kinematics_functions(krl, robot):
         krl(body, data)
 
 
+def test_inverse_tells_the_program_of_a_pose_that_it_finds_no_axes_for(krl, robot):
+    body = (
+        "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\nPTP XA\np=FORWARD(XA,err)\np.X=p.X+9000\n"
+        "q=INVERSE(p,XA,err)\nIF err==0 THEN\nPTP q\nELSE\nPTP {A1 5}\nENDIF"
+    )
+    data = DATA_LIST + "DECL E6POS p\nDECL E6AXIS q\nINT err"
+    program = krl(body, data, robot=robot)
+    assert [m.target.joints[0] for m in program.moves][1] == pytest.approx(math.radians(5))
+    assert any("INVERSE" in n.message and "cannot be reached" in n.message for n in program.notes)
+    with pytest.raises(SourceError, match="cannot be reached"):
+        krl(body.replace("q=INVERSE(p,XA,err)", "q=INVERSE(p,XA)"), data, robot=robot)
+
+
 def test_with_holds_for_one_motion(krl):
     body = "SLIN XP1 WITH $VEL.CP=0.1, $APO.CDIS=3, $TOOL=$NULLFRAME C_DIS\nSLIN XP2 C_DIS"
     first, second = krl(SET + body, DATA_LIST).moves

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from ....core.errors import SourceError
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.model import Robot
 from ..syntax.tree import Call, Name
@@ -17,6 +18,9 @@ from .inline_forms import Function
 from .position import Position
 from .tables import Tables
 from .targets import Targets
+
+_UNREACHABLE = 1
+"""An error; which number means what is not known, and programs ask whether it is 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +71,7 @@ class Kinematics:
             pose = self.position.forward(target, placement)
         if pose is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        self._no_error(call, scope)
+        self._error(call, 0, scope)
         return frame_of(pose, "e6pos")
 
     def inverse(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
@@ -84,14 +88,28 @@ class Kinematics:
                 joints = self.targets.joints(near, call.span).target
                 assert isinstance(joints, JointTarget)
                 start = joints
-            found = self.position.backward(target, placement, start, call.span)
+            try:
+                found = self.position.backward(target, placement, start, call.span)
+            except SourceError as error:
+                told = len(arguments) > 2 and start is not None
+                if not told or not self._error(call, _UNREACHABLE, scope):
+                    raise
+                reason = f"what {call.text} gives for a pose that it finds no axes for"
+                self.evaluator.data.note(
+                    "inverse",
+                    f"{call.text}: {error.message}; the program is told: its error is 1",
+                    call.span,
+                )
+                return Unknown(reason, call.span)
         if found is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        self._no_error(call, scope)
+        self._error(call, 0, scope)
         return found
 
-    def _no_error(self, call: Call, scope: Scope) -> None:
-        """The last argument takes the number of an error: none."""
+    def _error(self, call: Call, number: int, scope: Scope) -> bool:
+        """The last argument takes the number of an error, 0 for none; whether there is one."""
         last = call.arguments[-1] if call.arguments else None
-        if isinstance(last, Name) and len(call.arguments) > 1:
-            self.evaluator.assign(last, 0, scope, call.span)
+        if not isinstance(last, Name) or len(call.arguments) < 2:
+            return False
+        self.evaluator.assign(last, number, scope, call.span)
+        return True
