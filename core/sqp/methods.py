@@ -23,7 +23,8 @@ class SolverMethod(StrEnum):
     """The primal–dual interior point. Where it ends without a solution, sequential quadratic
     programming goes on from the best point, and finds out why."""
     SQP = "sqp"
-    """Sequential quadratic programming."""
+    """Sequential quadratic programming. Where its steps creep, and neither a box round the step nor
+    an approximate Hessian speaks against it, the interior point goes on."""
 
 
 def chosen(

@@ -13,7 +13,7 @@ from .problem.evaluation import Point
 from .problem.optimality import OptimalityResiduals
 from .problem.scaled import ScaledProblem
 from .result import Iteration
-from .verdict import Ending, Evidence, is_far, near
+from .verdict import Ending, Evidence, is_far, is_low, near
 
 
 class SolutionEnd(Exception):
@@ -121,7 +121,8 @@ class SolutionProgress:
 
     def _is_away(self, point: Point) -> bool:
         far = is_far(float(np.abs(point.x).max()), self._first_farthest)
-        return far or self.evidence(self.best.at, self.best.objective).away
+        best = self.best
+        return far or (is_low(best.objective) and self.evidence(best.at, best.objective).away)
 
     def _remember(self, point: Point, multipliers: FloatArray, at: OptimalityResiduals) -> None:
         seen = self.as_best(point, multipliers, at)

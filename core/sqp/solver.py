@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import FloatArray
 from .algebra.dense import LEAST_SIZE, is_dense
+from .best import Best
 from .given import Given
 from .interior_point.solution import InteriorSolution
 from .methods import SolverMethod, chosen
@@ -23,10 +24,15 @@ from .problem.scaled import ScaledProblem
 from .progress import SolutionEnd, SolutionProgress
 from .qp.backends import BackendKind
 from .result import Result, Status, Timings
+from .sequential.creep import CreepError
 from .sequential.method import Sequential
 from .sequential.model import NoSubproblemError
 from .verdict import Ending, verdict
 from .workspace import Workspace, make_workspace
+
+_NEARLY = 0.5
+"""Power of the tolerance up to which a point is violated so little that the interior point is
+worth a second try from there: its steps are far cheaper than the other method's."""
 
 
 def solve(
@@ -130,19 +136,36 @@ class _Solution:
         """Iterate until the end, which is an exception."""
         of_solution = self._workspace, self._options, self._progress
         given = Given(self._problem, self._hessian, *of_solution)
+        best = None
         if self._first is SolverMethod.INTERIOR_POINT and not self._full(point):
-            self._used.append(SolverMethod.INTERIOR_POINT)
-            InteriorSolution(given).run(point)
-            self._progress.iterations += 1
-            best = self._progress.best  # it gave up: the other method goes on, or says why not
-            self._used.append(SolverMethod.SQP)
+            best = self._by_interior_point(given, point)
+            if best.point is not point and best.at.violation <= self._options.tolerance**_NEARLY:
+                best = self._by_interior_point(given, best.point)  # less violated than it is now
             if isinstance(self._hessian, LimitedMemory):
                 kind = full_or_sparse(self._nlp)
                 given = replace(given, hessian=make_source(kind, self._problem.evaluation))
-            Sequential(given).go_on(best.point, best.multipliers, point)
-        self._used.append(SolverMethod.SQP)
-        Sequential(given).run(point)
+        try:
+            self._by_subproblems(Sequential(given), best, point)
+        except CreepError:
+            best = self._by_interior_point(given, self._progress.best.point)
+        self._by_subproblems(Sequential(given, patient=True), best, point)
         raise AssertionError("methods end by an exception")
+
+    def _by_interior_point(self, given: Given, point: Point) -> Best:
+        """The best point where the interior point gave up."""
+        self._used.append(SolverMethod.INTERIOR_POINT)
+        InteriorSolution(given).run(point)
+        self._progress.iterations += 1
+        return self._progress.best
+
+    def _by_subproblems(self, method: Sequential, best: Best | None, start: Point) -> None:
+        """Sequential quadratic programming, from the best point of another method where there is
+        one: it goes on, or says why not."""
+        self._used.append(SolverMethod.SQP)
+        if best is None:
+            method.run(start)
+        else:
+            method.go_on(best.point, best.multipliers, start)
 
     def _full(self, point: Point) -> bool:
         """Whether the Hessian has an entry almost everywhere, where the method is not the user's
@@ -155,12 +178,12 @@ class _Solution:
         """The best point, judged by residuals from the callables in the user's own scale."""
         progress, evaluation = self._progress, self._problem.evaluation
         subproblems = self._workspace.subproblems
-        x = progress.best.point.x
+        point = progress.best.point
         y = self._problem.to_user(progress.best.multipliers)
-        objective, at = self._problem.result_residuals(x, y)
+        objective, at = self._problem.result_residuals(point, y)
         status, message = verdict(ending, progress.evidence(at, objective))
         return Result(
-            x.copy(),
+            point.x.copy(),
             objective,
             status,
             message,

@@ -87,6 +87,11 @@ def is_far(size: float, first: float) -> bool:
     return size > _UNBOUNDED * max(1.0, first)
 
 
+def is_low(objective: float) -> bool:
+    """Whether an objective is so low that a problem may be unbounded."""
+    return objective < -_UNBOUNDED
+
+
 def near(at: OptimalityResiduals, tolerance: float) -> bool:
     """Whether residuals are as small as arithmetic may allow: each beside what it is the difference
     of; no variable's slope is excused by another one's multiplier."""

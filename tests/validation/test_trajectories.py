@@ -7,7 +7,7 @@ import pytest
 
 from flyby.core.sqp import check_derivatives, solve
 from flyby.validation.trajectories.cops import COPS
-from flyby.validation.trajectories.mechanics import MECHANICS, cart_pole
+from flyby.validation.trajectories.mechanics import MECHANICS, cart_pole, two_link_arm
 
 ALL = {**COPS, **MECHANICS}
 
@@ -31,8 +31,9 @@ def test_published_optima_are_reached(name: str) -> None:
 def test_the_glider_needs_a_fine_grid() -> None:
     """Coarse ones fly further than physics would let it; the optimum falls to the published one."""
     coarse, fine = (COPS["hang-glider"](nodes) for nodes in (41, 101))
-    ends = [solve(s.problem.nlp(), s.start).objective for s in (coarse, fine)]
-    assert ends[0] < ends[1] < fine.optimum
+    ends = [solve(s.problem.nlp(), s.start) for s in (coarse, fine)]
+    assert ends[0].objective < ends[1].objective < fine.optimum
+    assert ends[1].method == "interior_point"  # whose multipliers do not run away
 
 
 def test_kellys_cart_pole() -> None:
@@ -47,3 +48,12 @@ def test_kellys_cart_pole() -> None:
 def test_machines_move(name: str) -> None:
     stated = MECHANICS[name](31)
     assert solve(stated.problem.nlp(), stated.start).success
+
+
+def test_steps_that_creep_are_left_to_the_interior_point() -> None:
+    """Sequential quadratic programming alone takes hundreds of steps of equal size here."""
+    stated = two_link_arm(21)
+    result = solve(stated.problem.nlp(), stated.start, method="sqp")
+    assert result.success
+    assert result.method == "sqp and interior_point"
+    assert result.iterations < 150

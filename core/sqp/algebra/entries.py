@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import copy
-
 import numpy as np
 from scipy import sparse
 
@@ -33,7 +31,8 @@ class MatrixEntries:
 
     def matrix(self, values: FloatArray) -> sparse.csc_array:
         """The matrix with values (k,); its index arrays are shared with all others."""
-        filled = copy.copy(self._template)  # shallow: a tenth of the cost of a new one
+        filled = object.__new__(sparse.csc_array)  # a fiftieth of the cost of one that is checked
+        filled.__dict__.update(self._template.__dict__)
         filled.data = values[self._order] if self._unique else self._sums(values)
         return filled
 

@@ -31,6 +31,9 @@ _JAM, _JAMS = 1e-2, 10
 """Share of a step below which limits leave no way to feasibility, and after how many of them in a
 row there is none: the limits were come too near to, and restoration finds another way."""
 _LARGEST_FACTOR, _SMALL_FACTOR = 1e4, 1e-4
+_SHORT, _SOBER = 0.1, 100.0
+"""Share of a step below which it is short, and multiplier, functions being scaled to slopes of
+100, beyond which such a step's multipliers have run away."""
 
 
 class InteriorEnding(Enum):
@@ -192,7 +195,21 @@ class InteriorPoint:
         at = self.place.at
         advance(at, taken.step, self.box, taken.v, taken.length, taken.dual, self.barrier.mu)
         n = len(taken.point.x)
-        self.place = Place(at, taken.point, taken.point.c - taken.v[n:]).measure(self.box)
+        self.place = Place(at, taken.point, taken.point.c - taken.v[n:])
+        if self.newton.shift > 0.0 and taken.length < _SHORT:
+            self._sober()
+        self.place.measure(self.box)
+
+    def _sober(self) -> None:
+        """Multipliers of least squares where those of a short step of a shifted system have run
+        away: they grow with the shift, curvature grows with them, and with it the next shift."""
+        y = self.place.at.y
+        size = float(np.abs(y).max(initial=0.0))
+        if size <= _SOBER:
+            return
+        found = self.newton.first_multipliers(self.place, self.hessian)
+        if float(np.abs(found).max()) < size:
+            y[:] = found
 
     def jump(self, point: Point, slacks: FloatArray) -> None:
         """Go on from a point with derivatives, its multipliers chosen anew."""

@@ -24,6 +24,8 @@ GRADIENT_SIZE = 100.0
 _LEAST_FACTOR = 1e-8
 _NO_SLOPES, _NO_ROWS = np.zeros(0), empty(0)
 T = TypeVar("T")
+_quiet = np.errstate(all="ignore")
+"""What callables do beyond arithmetic shows in their values."""
 
 
 @dataclass(slots=True)
@@ -66,6 +68,7 @@ class Evaluation:
         self.seconds = 0.0
         self._jacobian = jacobian
         self.hessian_pattern = hessian
+        self._slopes: tuple[FloatArray, FloatArray, SparseMatrix] | None = None
         self._residuals: tuple[bytes, FloatArray] | None = None
         self._residual_jacobian: tuple[bytes, sparse.csc_array] | None = None
         self._have_given: set[str] = set()
@@ -88,6 +91,7 @@ class Evaluation:
 
     # ------------------------------------------------------------------------- values
 
+    @_quiet
     def point(self, x: FloatArray) -> Point:
         """Values at x.
 
@@ -98,18 +102,28 @@ class Evaluation:
         c = self._constraints(x) * self.constraint_factors
         return Point(x, f, c)
 
+    @_quiet
     def differentiate(self, point: Point) -> None:
         """Add the derivatives.
 
         Raises:
             CallableError: one is not finite.
         """
-        point.g = self._gradient(point.x) * self.objective_factor
-        point.J = self._scaled_rows(self._jacobian_at(point.x))
+        g, J = self._gradient(point.x), self._jacobian_at(point.x)
+        self._slopes = point.x, g, J
+        point.g = g * self.objective_factor
+        point.J = self._scaled_rows(J)
 
-    def unscaled(self, x: FloatArray) -> tuple[float, FloatArray, FloatArray, SparseMatrix]:
-        """f, c (m,), ∇f (n,) and J (m, n) as the callables give them."""
-        return self._objective(x), self._constraints(x), self._gradient(x), self._jacobian_at(x)
+    @_quiet
+    def unscaled(self, point: Point) -> tuple[float, FloatArray, FloatArray, SparseMatrix]:
+        """f, c (m,), ∇f (n,) and J (m, n) as the callables give them, worked out anew; derivatives
+        that were worked out last, at this very point, stand where its values come out the same."""
+        f, c, known = self._objective(point.x), self._constraints(point.x), self._slopes
+        same = f * self.objective_factor == point.f
+        same = same and np.array_equal(c * self.constraint_factors, point.c)
+        if known is None or known[0] is not point.x or not same:
+            return f, c, self._gradient(point.x), self._jacobian_at(point.x)
+        return f, c, known[1], known[2]
 
     def lagrangian_hessian(self, x: FloatArray, multipliers: FloatArray) -> SparseMatrix:
         """Hessian of the scaled Lagrangian; multipliers (m,) are the scaled ones.
@@ -127,6 +141,7 @@ class Evaluation:
         """
         return self._hessian_at(x, 0.0, multipliers)
 
+    @_quiet
     def _hessian_at(self, x: FloatArray, factor: float, multipliers: FloatArray) -> SparseMatrix:
         hessian = self.nlp.hessian
         assert hessian is not None
@@ -137,6 +152,7 @@ class Evaluation:
         self.hessian_pattern.symmetry.check("hessian", found)
         return found
 
+    @_quiet
     def residual_hessian(self, x: FloatArray) -> sparse.csc_array:
         """The Gauss–Newton Hessian of the scaled objective."""
         J = self._residual_jacobian_at(x)
@@ -221,8 +237,7 @@ class Evaluation:
         self.counts[name] = self.counts.get(name, 0) + 1
         begin = time.perf_counter()
         try:
-            with np.errstate(all="ignore"):
-                return function(*given)
+            return function(*given)
         except NlpError:
             raise
         except ArithmeticError as error:
@@ -236,7 +251,7 @@ class Evaluation:
 
     def _check_finite(self, name: str, values: FloatArray) -> None:
         self._have_given.add(name)
-        if isfinite(values.sum()):  # one pass where nothing is wrong
+        if isfinite(np.add.reduce(values)):  # one pass where nothing is wrong
             return
         bad = np.flatnonzero(~np.isfinite(values))
         if len(bad):

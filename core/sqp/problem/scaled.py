@@ -76,10 +76,10 @@ class ScaledProblem:
         return residuals(point.x, point.c, point.g, point.J, multipliers, self._bounds, factors)
 
     def result_residuals(
-        self, x: FloatArray, multipliers: FloatArray
+        self, point: Point, multipliers: FloatArray
     ) -> tuple[float, OptimalityResiduals]:
-        """Objective and residuals at x, computed anew from the callables; multipliers (m,) are the
-        unscaled ones."""
-        f, c, g, J = self.evaluation.unscaled(x)
+        """Objective and residuals at a point, computed anew from the callables; multipliers (m,)
+        are the unscaled ones."""
+        f, c, g, J = self.evaluation.unscaled(point)
         ones = 1.0, np.ones(self.nlp.m)
-        return f, residuals(x, c, g, J, multipliers, self._bounds, ones)
+        return f, residuals(point.x, c, g, J, multipliers, self._bounds, ones)

@@ -24,6 +24,7 @@ from ..problem.optimality import OptimalityResiduals
 from ..progress import SolutionEnd
 from ..qp.problem import QpSolution
 from ..verdict import Ending, nothing_to_gain
+from .creep import Creep, CreepError
 from .feasibility import Feasibility, NowhereError
 from .hot_start import hot_started
 from .model import Model
@@ -41,9 +42,14 @@ _ROUNDING = 1e-12
 
 
 class Sequential:
-    """One solution."""
+    """One solution.
 
-    def __init__(self, given: Given) -> None:
+    Args:
+        given: of the solution.
+        patient: whether to go on where steps creep.
+    """
+
+    def __init__(self, given: Given, patient: bool = False) -> None:
         self.given = given
         self.nlp = given.problem.nlp
         self.options = given.options
@@ -52,6 +58,8 @@ class Sequential:
         self.hessian = given.hessian
         self.progress = given.progress
         self.model = Model(given)
+        boxed = given.options.step_box is not None
+        self.creep = None if patient or boxed or not self.hessian.measured else Creep()
         self.stalls = 0
         self.failures = 0
         self.restarts = 0
@@ -63,6 +71,7 @@ class Sequential:
         Raises:
             SolutionEnd: when the solution ends.
             CallableError: the Hessian has no value.
+            CreepError: steps creep.
             NoSubproblemError: no back end solves a subproblem.
         """
         self.go_on(point, self._first_multipliers(point), point)
@@ -131,6 +140,9 @@ class Sequential:
             self.stalls = self.stalls + 1 if still else 0
             self.progress.iterations += 1
             at = self._visit(point, step.length, step.kind)
+            whole = step.kind == "normal" and step.length == 1.0 and self.model.shift > 0.0
+            if self.creep is not None and self.creep.seen(size, old.f - point.f, whole):
+                raise CreepError
 
     def _visit(self, point: Point, length: float, kind: str) -> OptimalityResiduals:
         return self.progress.visit(point, self.multipliers, length, kind, self.model.shift)
