@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from shlex import quote
 
 from ...core.dialect import SignalWords
 from ...core.door import spelt
@@ -108,7 +109,7 @@ def why_process(output: str) -> str:
     """Why a point stays that lies on such a path."""
     return (
         f"{output} is on there, along lines at one speed, as where a tool works on its way "
-        f"({spelt('free')} {output} if it does not)"
+        f"({spelt('free')} {quote(output)} if it does not)"
     )
 
 
