@@ -2,8 +2,8 @@
 
 It is done stretch by stretch, from stop to stop, while all others stay. A via point goes if a short
 search from there ends no higher without it. Then every one is cut in two (`doubling`) and searched
-from there, briefly; the best of these are searched longer, and one stays if it is better by enough.
-What short searches come to is neither refined nor proven, so that only what may stay is.
+from there, briefly; the best of these is searched longer, and stays if it is better by enough. What
+short searches come to is neither refined nor proven, so that only what may stay is.
 """
 
 from __future__ import annotations
@@ -32,8 +32,6 @@ _MOST = 4
 """Via points more in a stretch."""
 _BRIEF = 30
 """Iterations of a search that only compares."""
-_LONGER = 2
-"""Of those with one more, the best that are searched longer."""
 _ROUGH = 0.03
 """Share of the stretch's cost by which more searching may better what a short search comes to."""
 
@@ -143,17 +141,12 @@ class _Turn:
 
     def with_more(self, best: Counted) -> Counted:
         """With those that save time."""
-        given = best
         for _ in range(_MOST):
             more = self._with_one(best)
             if more is None:
                 break
             best = more
-        if best is given or not self.effort.generations:
-            return best
-        varied = replace(self.effort, starts=1, generations=1)
-        found = self._search(best, best.run.program, lambda k: k, varied)
-        return best if found is None or found.cost >= best.cost else found
+        return best
 
     def _without_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 + _SERVES_NOTHING * self._share(best))
@@ -169,15 +162,14 @@ class _Turn:
     def _with_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 - _PAYS * self._share(best))
         tried = [(rough, i) for i in self._divisible(best) if (rough := self._divided(best, i))]
-        longer = replace(self.effort, starts=1, generations=0)
-        found = [
-            counted
-            for rough, i in sorted(tried, key=lambda pair: pair[0].cost)[:_LONGER]
-            if self._may_come_to(best, rough, most)
-            and (counted := self._search(best, rough.program, _later(i), longer)) is not None
-        ]
-        chosen = min(found, key=lambda counted: counted.cost, default=None)
-        return chosen if chosen is not None and chosen.cost < most else None
+        if not tried:
+            return None
+        rough, i = min(tried, key=lambda pair: pair[0].cost)
+        if not self._may_come_to(best, rough, most):
+            return None
+        longer = replace(self.effort, starts=1, generations=min(1, self.effort.generations))
+        found = self._search(best, rough.program, _later(i), longer)
+        return found if found is not None and found.cost < most else None
 
     def _may_come_to(self, best: Counted, rough: Rough, cost: float) -> bool:
         """Whether what a short search comes to may cost no more than that, once it is refined."""
