@@ -138,11 +138,15 @@ class WaypointTask:
         """The same for a program whose points have been moved already.
 
         Limits are about where a point was in the program as it was given: those points have had
-        their way, and stay; tools that may be tilted a little are not tilted further.
+        their way, and stay; tools that may be tilted a little are not tilted further. So do points
+        at the ends of `ways`, which are not to become longer again and again.
         """
+        moves = self.ways if self.given is None else range(len(self.given))
+        ways = [i for i in moves if self.given_move(i) in self.ways]
+        held = dict.fromkeys([k for i in ways for k in (i - 1, i) if k >= 0], Fixed())
         return replace(
             self,
-            limits={i: _spent(limit) for i, limit in self.limits.items()},
+            limits={i: _spent(limit) for i, limit in self.limits.items()} | held,
             limit=_spent(self.limit),
             tilt=self.tilt if self.tilt >= math.pi else 0.0,
         )

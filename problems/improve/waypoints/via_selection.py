@@ -97,7 +97,7 @@ def idle_points(
         selection: what may change in it.
         judged: a program's cost, with its task; None if it does not keep its clearance.
     """
-    for i in _dispensable(best, selection):
+    for i in _countable(best, selection):
         fewer = without(best.run.program, i)
         cost = judged(fewer, best.task.renumbered(_gone(i), len(fewer.moves)))
         if cost is not None and cost <= best.cost * (1.0 + 1e-9):
@@ -150,7 +150,7 @@ class _Turn:
 
     def _without_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 + _SERVES_NOTHING * self._share(best))
-        for i in self._here(best, _dispensable(best, self.searches.selected(best))):
+        for i in self._here(best, _countable(best, self.searches.selected(best))):
             rough = self._compare(best, without(best.run.program, i), _gone(i))
             if rough is None or not self._may_come_to(best, rough, most):
                 continue
@@ -237,20 +237,15 @@ def _stretches(best: Counted) -> list[tuple[int, int]]:
 
 def _countable(best: Counted, selection: Selection) -> list[int]:
     """Via points that move, share their target with no other, and at which nothing is done: what
-    is switched there would be switched elsewhere."""
-    busy = _busy(best.run.program)
-    alone = [group[0] for group in selection.points if len(group) == 1]
-    return [i for i in alone if i not in busy]
-
-
-def _dispensable(best: Counted, selection: Selection) -> list[int]:
-    """Those of them at which no way begins or ends on which a part comes off what it touches."""
-    task, moves = best.task, best.run.path.route.moves
+    is switched there would be switched elsewhere. None of them ends a way on which a part comes off
+    what it touches, or comes to it."""
+    task, busy, moves = best.task, _busy(best.run.program), best.run.path.route.moves
     after = dict(pairwise(moves))
+    alone = [group[0] for group in selection.points if len(group) == 1]
     return [
         i
-        for i in _countable(best, selection)
-        if not any(task.given_move(k) in task.ways for k in (i, after.get(i, i)))
+        for i in alone
+        if i not in busy and not any(task.given_move(k) in task.ways for k in (i, after.get(i, i)))
     ]
 
 

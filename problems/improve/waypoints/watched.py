@@ -24,6 +24,8 @@ from .block_emulation import DrivenBlock, Driver
 
 _LATER = 1.5
 """Times the way of a pair until it is apart that a changed program may take."""
+_BEYOND = 0.1
+"""m beyond what is kept, to which distances are measured to find where it is reached."""
 
 
 class Watch(Protocol):
@@ -125,11 +127,14 @@ class TouchingPlaces:
         """
         farthest = np.empty_like(self.floor)
         for end, way in ((0, self.order), (1, self.order[::-1])):
-            near = self._near(distance, way)
-            shift = np.where(near, self.scene.shifts(q, self.ends[end]), 0.0)
-            # Up to the first place at which they are apart.
-            step = np.abs(np.diff(self.scene.shifts(q[way], self.ends[end]), axis=0))
-            reach = shift.max(axis=0, initial=0.0) + step.max(axis=0, initial=0.0)
+            near, columns = self._near(distance, way)[way], np.arange(distance.shape[1])
+            d, shift = distance[way], self.scene.shifts(q[way], self.ends[end])
+            last = np.maximum(near.sum(axis=0), 1)
+            apart = np.minimum(last, len(way) - 1), columns
+            before = np.maximum(apart[0] - 1, 0), columns
+            rise = np.maximum(d[apart] - d[before], 1e-9)
+            share = np.clip((self.clear - d[before]) / rise, 0.0, 1.0)
+            reach = shift[before] + share * (shift[apart] - shift[before])
             farthest[:, end] = np.where(near.all(axis=0), np.inf, _LATER * reach + RESTING)
         return TouchingPlaces(
             self.scene, self.places, self.floor, self.clear, self.order, self.ends, farthest
@@ -172,7 +177,8 @@ def watch(
         ends = first.path.segments.ends.q[[k[0], k[-1]], [0, 1]]
         for made in _touching(pairs, clearance, places, order, ends):
             q = first.q[places]
-            found.append(made.as_given(q, made.scene.distances(q, made.most).distance))
+            within = made.most + _BEYOND
+            found.append(made.as_given(q, made.scene.distances(q, within).distance))
     return tuple(found)
 
 

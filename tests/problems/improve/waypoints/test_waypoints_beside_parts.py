@@ -27,7 +27,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.shape import Box, Cylinder
 from flyby.core.spatial.pose import Pose
 from flyby.problems.improve.solution import Solution
-from flyby.problems.improve.waypoints import Effort, WaypointTask, optimize_waypoints
+from flyby.problems.improve.waypoints import Effort, Fixed, WaypointTask, optimize_waypoints
 from flyby.problems.improve.waypoints.changeable import beside_parts, select
 from flyby.problems.improve.waypoints.via_selection import Counted, idle_points
 from flyby.validation.scenes.handling import random_handling, worst_fault
@@ -195,3 +195,11 @@ def test_points_at_which_what_touches_is_not_apart_stay() -> None:
     assert {5, 6} <= set(task.ways) and "not apart yet" in task.settled[5]
     reasons = select(program, run.path, UR, task).reasons
     assert reasons[5] == task.settled[5]
+
+
+def test_ways_become_no_longer_again_and_again() -> None:
+    """Where points come and go a program is searched many times, each from the one before."""
+    task = WaypointTask(ways=(2, 4))
+    assert {i for i, limit in task.spent().limits.items() if limit == Fixed()} == {1, 2, 3, 4}
+    more = task.renumbered(lambda k: k + (k >= 1), 7).spent()
+    assert set(more.limits) == {2, 3, 4, 5}
