@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import sparse
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
 from .arrays import numbers, whole_number
 from .errors import NlpError
+
+_ROUNDING = 1e-14
+"""Share of its size by which a bound that was worked out may be off."""
 
 Matrix = FloatArray | sparse.sparray | sparse.spmatrix
 
@@ -38,14 +41,15 @@ class NLP:
             ones may have zeros in it, but no entry outside of it.
         hessian: x, objective_factor, multipliers (m,) → ∇²(factor f + multipliers·c) (n, n), both
             triangles, dense or sparse; None for an approximation.
-        x_lower, x_upper: (n,) or a number; None for none. Equal bounds fix a variable.
+        x_lower, x_upper: (n,) or a number; None for none. Equal bounds fix a variable, as do such
+            that cross by rounding alone.
         c_lower, c_upper: (m,) or a number; None for none. Equal bounds make an equality.
         residuals: x → r (k,).
         residual_jacobian: x → ∂r/∂x (k, n).
 
     Raises:
         NlpError: a wrong size, a bound that is NaN or an infinity of the wrong sign, a lower bound
-            above the upper one, a callable without its partner.
+            above the upper one by more than rounding, a callable without its partner.
     """
 
     n: int
@@ -71,10 +75,7 @@ class NLP:
             upper = _bound(getattr(self, f"{kind}_upper"), f"{kind}_upper", size, np.inf)
             crossed = np.flatnonzero(lower > upper)
             if len(crossed):
-                i = int(crossed[0])
-                raise NlpError(
-                    f"{kind}_lower[{i}] = {lower[i]:g} is above {kind}_upper[{i}] = {upper[i]:g}"
-                )
+                lower = _uncrossed(lower, upper, crossed, kind)
             object.__setattr__(self, f"{kind}_lower", lower)
             object.__setattr__(self, f"{kind}_upper", upper)
 
@@ -105,6 +106,24 @@ def _check_partners(nlp: NLP) -> None:
         raise NlpError("objective and residuals exclude each other")
     if nlp.hessian is not None and nlp.residuals is not None:
         raise NlpError("hessian goes with an objective; residuals have the Gauss–Newton Hessian")
+
+
+def _uncrossed(lower: FloatArray, upper: FloatArray, crossed: IntArray, kind: str) -> FloatArray:
+    """Lower bounds that are not above upper ones, where they are so by rounding alone.
+
+    Raises:
+        NlpError: by more.
+    """
+    below, above = upper[crossed], lower[crossed]
+    far = above - below > _ROUNDING * np.maximum(np.abs(above), np.abs(below))
+    if far.any():
+        i = int(crossed[np.argmax(far)])
+        raise NlpError(
+            f"{kind}_lower[{i}] = {lower[i]:.12g} is above {kind}_upper[{i}] = {upper[i]:.12g}"
+        )
+    mended = np.minimum(lower, upper)
+    mended.flags.writeable = False
+    return mended
 
 
 def _bound(value: ArrayLike | None, name: str, size: int, missing: float) -> FloatArray:

@@ -18,7 +18,7 @@ from ....core.arrays import FloatArray
 from ..coating.deposition import Deposition
 from ..spray.trajectory import PaintTrajectory
 from .options import PaintWeights
-from .path_cost import PathCost
+from .path_cost import path_cost
 from .variables import ThicknessVariables
 
 _REMEMBERED = 3
@@ -64,7 +64,7 @@ class PaintObjective:
         self._shares = samples.areas * (1e4 / (samples.area * target**2))
         nominal = scenarios[0].deposition.footprint
         self._paint = weights.paint * nominal.rate / (samples.area * target)
-        self._path = PathCost(weights, variables.waypoints)
+        self._path = path_cost(weights, variables.waypoints)
         self._seen: dict[bytes, tuple[PaintTrajectory, list[FloatArray]]] = {}
 
     def value(self, z: FloatArray) -> float:
@@ -82,8 +82,8 @@ class PaintObjective:
         """∇J (n,)."""
         trajectory, errors = self._errors(z)
         turns = self._variables.turns(z)
-        position, nozzle = np.zeros((2, *trajectory.position.shape))
-        duration = self._weights.time + self._paint * trajectory.flow
+        position, nozzle, duration = self._path.slopes(trajectory)
+        duration = duration + self._weights.time + self._paint * trajectory.flow
         for scenario, error in zip(self._scenarios, errors, strict=True):
             adjoint = scenario.weight * self._shares * error
             slopes = scenario.deposition.gradient(trajectory, adjoint)
@@ -92,8 +92,7 @@ class PaintObjective:
             duration = duration + slopes.duration
         angles = np.einsum("ijk,ik->ij", turns, nozzle)
         waypoints = np.concatenate((position, angles), axis=1).ravel()
-        path = self._path.jacobian(trajectory, turns).T @ self._path.residuals(trajectory)
-        return np.asarray((np.concatenate((waypoints, duration)) + path) * self._units)
+        return np.asarray(np.concatenate((waypoints, duration)) * self._units)
 
     def curvature(self, z: FloatArray) -> FloatArray:
         """The Gauss–Newton matrix (n, n): positive semidefinite, without second derivatives of

@@ -74,6 +74,7 @@ WRONG_PROBLEMS = [
     ({"c_lower": INF}, r"c_lower\[0\] is inf"),
     ({"c_upper": -INF}, r"c_upper\[0\] is -inf"),
     ({"x_lower": [0, 2], "x_upper": [1, 1]}, r"x_lower\[1\] = 2 is above x_upper\[1\] = 1"),
+    ({"x_lower": [0, 1.0000001], "x_upper": 1}, r"= 1.0000001 is above x_upper\[1\] = 1$"),
     ({"c_lower": 2, "c_upper": 1}, r"c_lower\[0\] = 2 is above c_upper\[0\] = 1"),
 ]
 
