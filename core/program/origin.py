@@ -2,10 +2,60 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any, overload
 
 from ..errors import Span
+
+
+class Spans(Sequence[Span | None]):
+    """Where numbers stand, looked for when somebody asks: most of a long program's nobody does.
+
+    It equals, and is hashed and stored like, the tuple of them.
+
+    Args:
+        find: gives them.
+    """
+
+    __slots__ = ("_find", "_found")
+
+    def __init__(self, find: Callable[[], tuple[Span | None, ...]]) -> None:
+        self._find = find
+        self._found: tuple[Span | None, ...] | None = None
+
+    def _all(self) -> tuple[Span | None, ...]:
+        if self._found is None:
+            self._found = self._find()
+        return self._found
+
+    @overload
+    def __getitem__(self, index: int) -> Span | None: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Span | None, ...]: ...
+    def __getitem__(self, index: int | slice) -> Span | tuple[Span | None, ...] | None:
+        return self._all()[index]
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+    def __iter__(self) -> Iterator[Span | None]:
+        return iter(self._all())
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Spans | tuple):
+            return self._all() == tuple(other)
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._all())
+
+    def __repr__(self) -> str:
+        return repr(self._all())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return tuple, (self._all(),)
 
 
 class Ownership(StrEnum):
@@ -40,7 +90,7 @@ class Origin:
     ownership: Ownership
     span: Span
     datum: str | None = None
-    numbers: tuple[Span | None, ...] = ()
+    numbers: Sequence[Span | None] = ()
     data: tuple[str | None, ...] = ()
     base: str | None = None
 

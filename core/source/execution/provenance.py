@@ -47,7 +47,7 @@ class Source(Protocol):
 
     @property
     def numbers(self) -> Sequence[Span | None]:
-        """Its numbers, in the order of the vendor's own literal form."""
+        """Its numbers, in the order of the vendor's own literal form: a tuple, or `Spans`."""
         ...
 
 
@@ -95,7 +95,7 @@ class Reads:
         first = part.sources[0]
         if first is not None and len(part.sources) == 1:
             own = Ownership.OWNED if self._alone(first, move) else Ownership.SHARED
-            return Origin(own, part.span, first.datum, tuple(first.numbers))
+            return Origin(own, part.span, first.datum, first.numbers)
         sources = [source for source in part.sources if source is not None]
         if not sources:
             return Origin(Ownership.DERIVED, part.span)

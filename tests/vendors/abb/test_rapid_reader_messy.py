@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import flyby
 from flyby.core.errors import FlybyError, SourceError, Span
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
-from flyby.core.program.origin import Ownership
+from flyby.core.program.origin import Ownership, Spans
 from flyby.core.program.program import Program
 from flyby.core.program.question import QuestionKind
 from flyby.core.registry import find_robot, find_vendor
@@ -190,7 +190,7 @@ def values(value: object) -> object:
     if is_dataclass(value):
         own = {field.name: values(getattr(value, field.name)) for field in fields(value)}
         return type(value).__name__, own
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | Spans):
         return [values(part) for part in value]
     return value.lower() if isinstance(value, str) else value
 

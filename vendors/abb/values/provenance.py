@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+
 from ....core.errors import Span
+from ....core.program.origin import Spans
 from ....core.source.text.quick import quick
 from ..syntax.packed import number_spans, unpacked
 from ..syntax.tree import Aggregate, Expression, Number, Packed, Text, Truth
@@ -29,9 +33,12 @@ class Literal:
         return self.expression.span
 
     @property
-    def numbers(self) -> tuple[Span, ...]:
+    def numbers(self) -> Sequence[Span | None]:
         """Spans of its numbers, left to right."""
-        return _numbers(self.expression)
+        literal = self.expression
+        if isinstance(literal, Packed):
+            return Spans(partial(number_spans, literal))
+        return _numbers(literal)
 
     def part(self, index: int, name: str) -> Literal | None:
         """The source of an item of an aggregate."""

@@ -97,7 +97,7 @@ class Kinematics:
                 reason = f"what {call.text} gives for a pose that it finds no axes for"
                 self.evaluator.data.note(
                     "inverse",
-                    f"{call.text}: {error.message}; the program is told: its error is 1",
+                    f"{call.text}: {error.message}; its last argument is {_UNREACHABLE}",
                     call.span,
                 )
                 return Unknown(reason, call.span)

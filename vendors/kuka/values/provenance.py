@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ....core.errors import Span
+from ....core.program.origin import Spans
 from .values import Leaf, Root, Value, leaf_of
 
 
@@ -63,8 +64,11 @@ class RecordSource:
         self.key = (id(root), "*")
 
     @property
-    def numbers(self) -> tuple[Span | None, ...]:
+    def numbers(self) -> Sequence[Span | None]:
         """Its numbers in the order that is wanted."""
+        return Spans(self._numbers)
+
+    def _numbers(self) -> tuple[Span | None, ...]:
         whole, places = self.root, self._places
         file, line, before = whole.file, whole.line, whole.column - whole.start
         spans: list[Span | None] = []

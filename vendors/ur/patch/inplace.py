@@ -129,7 +129,7 @@ def arguments(use: Use) -> list[Argument]:
 
 def _spans(use: Use, count: int) -> tuple[Span | None, ...]:
     spans = use.origin.numbers
-    return spans if len(spans) == count else (None,) * count
+    return tuple(spans) if len(spans) == count else (None,) * count
 
 
 def _goal(use: Use, old: Target, new: Target) -> Iterator[Argument]:
