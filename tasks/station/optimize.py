@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...core.door import spelt
 from ...core.errors import InputError, UnknownNameError
-from ..changes import kept_moves, process_of
+from ..changes import kept_moves, process_of, targets_of
 from ..files.texts import ProgramTexts
 from ..optimize import OptimizeOptions, optimize_beside
 from ..options.entries import ANGLE, COUNT, Extent, number, switch, value
@@ -193,7 +193,7 @@ def _slow(
         WaypointTask(
             keep=moves,
             keep_speeds=speeds,
-            process=process_of(member.program, setup, share.free, ()),
+            process=process_of(member.program, setup, share.free, targets_of(member.handling)),
         ),
         start_of(member.program),
         reserve,

@@ -120,7 +120,7 @@ def beside_parts(task: WaypointTask, program: Program, path: Path, scenes: Scene
                 limits[i] = Fixed(_SUNK.format(1e3 * leaving, "releases", "out of"))
             if coming > RESTING and k:
                 limits[driven[k - 1]] = Fixed(_SUNK.format(1e3 * coming, "takes", "into"))
-    return replace(task, settled=settled, ways=ways, limits=limits | dict(task.limits))
+    return replace(task, settled=settled, ways=ways, limits=dict(task.limits) | limits)
 
 
 _SUNK = "the tool's shape is {:.1f} mm in the part that it {} there, so no other way {} it is known"

@@ -308,7 +308,7 @@ REFUSED: list[Any] = [
     (
         f"x = 0.5\nmovel({ONE}, a=x, v=x)",
         part("speed", tcp=0.25),
-        "the literal does not state all of it",
+        "x does not state all of it",
     ),
     (f"movel({ONE}, v=0.5/2)", part("speed", tcp=0.5), "the program computes it"),
 ]
