@@ -22,6 +22,10 @@ points and segments, and the memory of a process that then takes two steps of th
 
 from __future__ import annotations
 
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import math
 import time
 from collections.abc import Callable, Iterator
