@@ -237,11 +237,11 @@ class HandledScenes:
     def _until(self, scene: CollisionScene, move: int, pairs: IntArray, step: int) -> IntArray:
         """The move on which each pair (K, 2) is first apart, going on from a move, or back.
 
-        What a part rests on is let go beyond one move only if the part goes on being lifted there.
+        Beyond one move a pair is let go only where it goes on coming apart: a tool that is moved to
+        and fro in a part, or a part along the table, is not on its way out.
         """
         found = np.full(len(pairs), move)
         left = np.flatnonzero(self._still_near(scene, move, pairs, step))
-        drawn = self._drawn(scene, pairs)
         while len(left):
             k = self._driven.index(move) + step
             beyond = self._scene(self._driven[k]) if 0 <= k < len(self._driven) else None
@@ -250,7 +250,7 @@ class HandledScenes:
             move = self._driven[k]
             alike = [_alike(scene, beyond, pair) for pair in pairs[left].tolist()]
             left = left[np.array(alike, dtype=np.bool_)]
-            left = left[drawn[left] | self._lifted(beyond, move, pairs[left], step)]
+            left = left[self._lifted(beyond, move, pairs[left], step)]
             found[left], scene = move, beyond
             left = left[self._still_near(scene, move, pairs[left], step)]
         return found

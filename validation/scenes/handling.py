@@ -264,8 +264,8 @@ def worst_fault(cell: Cell, handling: Handling, path: Path, clearance: float = 0
 
     Made apart from the proofs: the rules once more, pair by pair and sample by sample. A pair that
     touches where a part is taken or released keeps the clearance once it has surely been apart,
-    and is no deeper before than where it was taken or released; others always keep it. A tool may
-    take several moves until it is apart, a part that is lifted all along, too.
+    and is no deeper before than where it was taken or released; others always keep it. It may take
+    several moves until it is apart, if it goes on coming apart on each behind the first.
 
     Args:
         cell: with its parts, and one tool.
@@ -329,7 +329,7 @@ def _let_go(ways: Sequence[_MoveSamples], names: Set[str], way: int, clearance: 
             if row is None:
                 break
             d, least = samples.distance[::way, row], samples.least[::way, row]
-            if k and not (drawn or _lifted(d, clearance)):
+            if k and not _lifted(d, clearance):
                 break
             apart = np.logical_or.accumulate(d >= clearance + APART)
             least[~apart] = np.minimum(least[~apart], floor)

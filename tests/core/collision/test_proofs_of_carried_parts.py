@@ -237,8 +237,12 @@ def test_a_tool_draws_back_in_as_many_moves_as_it_takes(clearance: float) -> Non
         )
     )
     assert met[0] is not None and not met[0].overlaps and met[0].distance >= clearance
-    # Out of it sideways as deep as before is what nobody can forbid; deeper it does not go.
+    # It goes on coming out: neither deeper nor across.
     assert proof(retreat(0.088, 0.06, 0.3), cell, clearance).verdict is Verdict.VIOLATED
+    *there, up, _ = retreat(0.088, 0.3).statements
+    across = Program((*there, up, to(0.63, -0.15, 0.088), to(0.63, -0.15, 0.3)))
+    made = proof(across, cell, clearance)
+    assert made.verdict is Verdict.VIOLATED and set(made.pair or ()) == {"grip", "crate"}
     # Once it was out it must not come back.
     back = proof(retreat(0.088, 0.13, 0.088), cell, clearance)
     assert back.verdict is Verdict.VIOLATED and back.move == 7
