@@ -95,7 +95,7 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
     cell = setup.surroundings(program, no_floor=options.no_floor)
     if options.vias == CHANGE:  # what cannot be written anew is refused before the search
         setup.vendor.write(program, setup.robot)
-    course = CellCourse.of(program, setup)
+    course = replace(CellCourse.of(program, setup), counted=options.vias == CHANGE)
     task = task_of(
         program,
         setup,

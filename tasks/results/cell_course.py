@@ -30,6 +30,7 @@ class CellCourse:
         setup: its robot and cell.
         handling: of the cell's parts; None for no cell, or one without parts.
         notes: what there is to say of the parts.
+        counted: whether programs that are made of it may have other moves, not only as many.
     """
 
     program: Program
@@ -37,6 +38,7 @@ class CellCourse:
     setup: Setup
     handling: Handling | None = None
     notes: tuple[Note, ...] = ()
+    counted: bool = False
 
     @classmethod
     def of(cls, program: Program, setup: Setup) -> CellCourse:
@@ -63,7 +65,7 @@ class CellCourse:
         """The program, changed, with the parts that it carries."""
         if self.handling is None:
             return program
-        if len(program.moves) != len(self.given.moves):
+        if self.counted:
             return CellCourse.of(program, self.setup).program
         return _with_loads(program, [move.load for move in self.program.moves])
 
@@ -72,7 +74,7 @@ class CellCourse:
         if self.handling is None:
             return program
         pairs = list(zip(self.program.moves, self.given.moves, strict=True))
-        if len(program.moves) == len(pairs):
+        if not self.counted:
             return _with_loads(program, [given.load for _, given in pairs])
         # Moves come and go, but none with a load of its own.
         known = {(loaded.tool, loaded.load): given.load for loaded, given in pairs}

@@ -11,6 +11,7 @@ import flyby
 from flyby.core.errors import InputError
 from flyby.core.lint.check import CLEARANCE, COLLISION, NEAREST, PART
 from flyby.core.lint.finding import Finding
+from flyby.core.program.move import Move
 from flyby.core.program.zone import Fine
 from flyby.tasks.results.cell_course import CellCourse
 from flyby.tasks.setup import setup_of_program
@@ -135,7 +136,7 @@ def test_a_program_that_carries_parts_becomes_faster(cell, tmp_path: Path) -> No
 
 def test_moves_that_come_and_go_leave_loads_as_they_were(cell) -> None:
     program = flyby.read(PICK, cell=cell())
-    course = CellCourse.of(program, setup_of_program(program))
+    course = replace(CellCourse.of(program, setup_of_program(program)), counted=True)
     assert course.unloaded(course.program) == program and course.loaded(program) == course.program
     statements = list(course.program.statements)
     carried = next(k for k, s in enumerate(statements) if getattr(s, "load", None) is not None)
@@ -164,3 +165,21 @@ def test_zones_grow_as_far_as_what_is_carried_lets_them(cell) -> None:
         assert change or [isinstance(moves[k].zone, Fine) for k in (2, 5, 8, 11)] == [True] * 4
         zones.append(moves[3].zone.tcp)
     assert zones[0] < 0.6 * zones[1]
+
+
+def test_as_many_moves_are_not_the_same_moves(cell) -> None:
+    """One has gone before the bottle is taken, and one has come behind: all between are shifted."""
+    program = flyby.read(PICK, cell=cell())
+    course = CellCourse.of(program, setup_of_program(program))
+    statements = list(program.statements)
+    places = [k for k, statement in enumerate(statements) if isinstance(statement, Move)]
+    statements.insert(places[6], program.moves[6])
+    del statements[places[1]]
+    other = replace(program, statements=tuple(statements))
+    assert len(other.moves) == len(program.moves)
+
+    counted = replace(course, counted=True)
+    wanted = CellCourse.of(other, counted.setup).program
+    assert [move.load is not None for move in wanted.moves[1:5]] == [False, True, True, True]
+    assert counted.loaded(other) == wanted != course.loaded(other)
+    assert counted.unloaded(wanted) == other

@@ -33,7 +33,6 @@ def test_it_is_a_distribution(folder: Path) -> None:
 
 def test_it_is_built_by_what_builds_flyby(folder: Path, tmp_path: Path) -> None:
     """Without a network: nothing is asked for but setuptools."""
-    pytest.importorskip("setuptools")
     shutil.copytree(folder, tmp_path / "zeta")
     build = "import sys; from setuptools.build_meta import build_wheel as b; b(sys.argv[1])"
     command = [sys.executable, "-c", build, str(tmp_path)]

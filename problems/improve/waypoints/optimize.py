@@ -23,7 +23,7 @@ from ..gains import seconds_gained
 from ..process_paths import lines_moved
 from ..progress import Progress, Report
 from ..rounding import Rounding
-from ..solution import Solution, measure, moved_points
+from ..solution import Moved, Solution, measure, moved_points
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from .block_emulation import drivable
 from .block_search import FEASIBLE, Answer, Shared
@@ -128,9 +128,13 @@ class _Optimization:
             return Solution(program, program, before, before, proof, tuple(notes))
         if self.task.vias is ViaCount.KEEP:
             notes += self._idle(found)
-        notes += approach_notes(given, found.run)
-        moved = moved_points(self.controller.robot, given, found.run)
-        notes += lines_moved(program, moved)
+        moved: tuple[Moved, ...] = ()
+        gained: dict[int, float] = {}
+        if found.task.as_many_moves:
+            notes += approach_notes(given, found.run)
+            moved = moved_points(self.controller.robot, given, found.run)
+            notes += lines_moved(program, moved)
+            gained = seconds_gained(given, found.run)
         after = measure(self.controller, found.run, found.certificate)
         return Solution(
             program,
@@ -140,7 +144,7 @@ class _Optimization:
             found.certificate,
             tuple(notes),
             moved,
-            gained=seconds_gained(given, found.run),
+            gained=gained,
         )
 
     def _zones_alone(self, program: Program, base: Program, read_back: ReadBack) -> Counted | None:

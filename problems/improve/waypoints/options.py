@@ -115,6 +115,11 @@ class WaypointTask:
             if value is not None and not 0.0 <= value < math.inf:
                 raise InputError(f"WaypointTask.{name} is zero or more metres, not {value}")
 
+    @property
+    def as_many_moves(self) -> bool:
+        """Whether the program has the moves of the one that was given: none came, and none went."""
+        return self.given is None or self.given == tuple(range(len(self.given)))
+
     def given_move(self, move: int) -> int:
         """The index of a move in the program as it was given."""
         return move if self.given is None else self.given[move]
