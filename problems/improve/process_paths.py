@@ -1,9 +1,10 @@
 """Where an output shows that the robot works along its path: what it glues, welds or cuts there.
 
 No program says which of its points the process needs. But where an output goes on, the robot then
-drives along lines and arcs alone, all at one speed, and the output goes off again, the path is
-taken to be the work itself. Way through the air is driven by joint moves or at speeds of its own,
-and what only opens and shuts at stops lies between no moves.
+drives along lines and arcs alone, and the output goes off again, the moves in a row at one speed
+are taken to be the work itself: a bead may be slower round its corners. Way through the air is
+driven by joint moves or at speeds of its own, and what only opens and shuts at stops lies between
+no moves.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ...core.program.event import EventAnchor
 from ...core.program.move import Move, MoveJ, Opaque
 from ...core.program.program import Program
 from ...core.program.signal import SetSignal
+from ...core.program.tool import Tool
 from ...core.program.zone import Fine
 from .solution import Moved
 
@@ -53,8 +55,9 @@ def process_paths(program: Program, words: SignalWords | None) -> tuple[ProcessP
             begun.setdefault(key, first)
         elif key in begun:
             begin = begun.pop(key)
-            if _is_work(program.moves[begin : last + 1]):
-                found.append(ProcessPath(action.name, begin, last))
+            moves = program.moves[begin : last + 1]
+            if not any(isinstance(move, MoveJ) for move in moves):
+                found += [ProcessPath(action.name, begin + i, begin + k) for i, k in _works(moves)]
     return tuple(found)
 
 
@@ -89,7 +92,13 @@ def lines_moved(given: Program, moved: Sequence[Moved]) -> list[Note]:
         moved: its points that are elsewhere now.
     """
     moves, distance = given.moves, {one.move: one.distance for one in moved}
-    lines = [i for i in distance if _is_work(moves[i : i + 2])]
+    lines = [
+        i
+        for i in distance
+        if i + 1 < len(moves)
+        and not any(isinstance(move, MoveJ) for move in moves[i : i + 2])
+        and _works(moves[i : i + 2])
+    ]
     notes, begin = [], 0
     for end in range(1, len(lines) + 1):
         if end < len(lines) and lines[end] == lines[end - 1] + 1:
@@ -130,14 +139,16 @@ def _switched(program: Program, words: SignalWords) -> Iterator[tuple[int, int, 
                 yield index + 1, index, action
 
 
-def _is_work(moves: Sequence[Move]) -> bool:
-    """Whether moves are such as a process is driven with, and pass a point on their way."""
-    return (
-        any(not isinstance(move.zone, Fine) for move in moves[:-1])
-        and not any(isinstance(move, MoveJ) for move in moves)
-        and all(
-            (one.speed.tcp, one.speed.reorientation) == (two.speed.tcp, two.speed.reorientation)
-            and one.tool == two.tool
-            for one, two in pairwise(moves)
-        )
-    )
+def _works(moves: Sequence[Move]) -> list[tuple[int, int]]:
+    """First and last of moves in a row at one speed with one tool, where a point is passed."""
+    begins = [0] + [k for k in range(1, len(moves)) if _paced(moves[k]) != _paced(moves[k - 1])]
+    rows = [(begin, end - 1) for begin, end in pairwise([*begins, len(moves)])]
+    return [
+        (first, last)
+        for first, last in rows
+        if any(not isinstance(move.zone, Fine) for move in moves[first:last])
+    ]
+
+
+def _paced(move: Move) -> tuple[float | None, float | None, Tool]:
+    return move.speed.tcp, move.speed.reorientation, move.tool

@@ -55,6 +55,17 @@ def test_between_on_and_off() -> None:
     assert paths(rapid()) == [("doGlue", 2, 4)]
 
 
+def test_a_bead_that_is_faster_on_its_last_lines() -> None:
+    further = (
+        "MoveL [[1100,300,800],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v300,fine,tool0;"
+    )
+    last = "v200,{stop},tool0;\n    {off}"
+    text = RAPID.replace(last, f"v300,z5,tool0;\n    {further}\n    {{off}}")
+    words = {"stop": "fine", "on": "Set doGlue;", "off": "Reset doGlue;", "line": "MoveL"}
+    program = find_vendor("abb").read(text.format(**words, speed="v200"), "Glue.mod")
+    assert paths(program) == [("doGlue", 2, 3), ("doGlue", 4, 5)]
+
+
 def test_without_stops_at_its_ends() -> None:
     assert paths(rapid(stop="z1")) == [("doGlue", 2, 4)]
 
@@ -63,7 +74,6 @@ def test_without_stops_at_its_ends() -> None:
     "words",
     [
         {"line": "MoveJ"},  # through the air
-        {"speed": "v800"},
         {"off": ""},  # never off again
         {"on": "Reset doGlue;", "off": "SetDO doGlue,1;"},
         {"on": "PulseDO doGlue;"},
