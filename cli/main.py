@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import logging
+import os
 from collections.abc import Iterator, Mapping
 from importlib import import_module
 from keyword import iskeyword
@@ -167,4 +168,6 @@ def main() -> None:
     # Imports make many objects and no garbage: to look for it some hundred times is a tenth of a
     # short command.
     gc.set_threshold(_BETWEEN_LOOKS)
+    # The matrices are small: on a busy machine further threads wait for each other, and spin.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     app(prog_name="flyby")

@@ -18,10 +18,12 @@ from ..setup import setup_of_program, start_of
 from .changing import Share, StationChangeOptions, changed_station
 
 if TYPE_CHECKING:
+    from ...core.collision.proof.certificate import SceneOf
     from ...core.collision.proof.verdict import Certificate
     from ...core.motion.emulator.run import Run
     from ...core.program.program import Program
     from ...core.source.reading import Files
+    from ...core.station.station import StationRobot
     from ...problems.improve.solution import Solution
     from ...problems.improve.solve_round_verify import Beside
     from ...problems.improve.station.feasibility import StationFeasibility
@@ -137,7 +139,6 @@ def _release(
     outputs: frozenset[str],
 ) -> None:
     """Set a robot's outputs as early as is proven."""
-    from ...core.collision.handled_scenes import scenes_along
     from ...core.source.patch.edits import reading_of
     from ...problems.improve.station.releases import EarlierReleases
 
@@ -151,13 +152,7 @@ def _release(
     earlier = EarlierReleases(
         feasibility,
         name,
-        scenes_along(
-            member.cell,
-            member.handling,
-            member.program,
-            lambda: member.run.path,
-            member.cell.clearance,
-        ),
+        _scenes(member),
         start_of(member.program),
         reread,
         outputs,
@@ -167,11 +162,23 @@ def _release(
         _put(feasibility, name, solutions, run, certificate, files)
 
 
+def _scenes(member: StationRobot) -> SceneOf:
+    """Of a robot's program in its own cell."""
+    from ...core.collision.handled_scenes import scenes_along
+
+    return scenes_along(
+        member.cell,
+        member.handling,
+        member.program,
+        lambda: member.run.path,
+        member.cell.clearance,
+    )
+
+
 def _slow(
     feasibility: StationFeasibility, share: Share, solutions: dict[str, Solution], reserve: float
 ) -> None:
     """Put a slower program in the place of a robot's, where it would wait else."""
-    from ...core.collision.handled_scenes import scenes_along
     from ...problems.improve.station.slowing import Slowing
     from ...problems.improve.waypoints import WaypointTask
 
@@ -182,13 +189,7 @@ def _slow(
     found = Slowing(
         feasibility,
         share.name,
-        scenes_along(
-            member.cell,
-            member.handling,
-            member.program,
-            lambda: member.run.path,
-            member.cell.clearance,
-        ),
+        _scenes(member),
         setup.vendor.speaks,
         WaypointTask(
             keep=moves,
