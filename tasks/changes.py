@@ -251,7 +251,7 @@ def process_of(
     from ..problems.improve.process_paths import along_process, process_paths
 
     paths = process_paths(program, _words(setup))
-    holding = [p.output for p in paths if {p.first - 1, p.last} & set(handled)]
+    holding = [p.output for p in paths if {p.on, p.off} & set(handled)]
     return along_process(paths, {name.casefold() for name in (*map(str, free), *holding)})
 
 

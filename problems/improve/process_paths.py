@@ -33,11 +33,14 @@ class ProcessPath:
     Args:
         output: its name, as the language spells it.
         first, last: indices of the moves.
+        on, off: indices of the moves behind which it goes on, and off.
     """
 
     output: str
     first: int
     last: int
+    on: int
+    off: int
 
 
 def process_paths(program: Program, words: SignalWords | None) -> tuple[ProcessPath, ...]:
@@ -57,7 +60,10 @@ def process_paths(program: Program, words: SignalWords | None) -> tuple[ProcessP
             begin = begun.pop(key)
             moves = program.moves[begin : last + 1]
             if not any(isinstance(move, MoveJ) for move in moves):
-                found += [ProcessPath(action.name, begin + i, begin + k) for i, k in _works(moves)]
+                found += [
+                    ProcessPath(action.name, begin + i, begin + k, begin - 1, last)
+                    for i, k in _works(moves)
+                ]
     return tuple(found)
 
 

@@ -183,3 +183,14 @@ def test_as_many_moves_are_not_the_same_moves(cell) -> None:
     assert [move.load is not None for move in wanted.moves[1:5]] == [False, True, True, True]
     assert counted.loaded(other) == wanted != course.loaded(other)
     assert counted.unloaded(wanted) == other
+
+
+def test_what_holds_a_part_is_no_process(cell, tmp_path: Path) -> None:
+    """The bottle is carried along lines at one speed, as a bead would be laid."""
+    program = tmp_path / "pick.script"
+    text = PICK.read_text("utf-8").replace("a=1.2, v=0.5", "a=1.2, v=0.4")
+    program.write_text(text, "utf-8")
+    carried = flyby.zones(flyby.read(program, cell=cell()))
+    assert not any("digital_out" in note.message for note in carried.notes)
+    unknown = flyby.zones(flyby.read(program, robot="ur/ur10e"), no_floor=True)
+    assert any("digital_out[0] is on there" in note.message for note in unknown.notes)
