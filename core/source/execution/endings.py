@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import Generic
 
 from ...errors import Span
 from ...program.cycle import Cycle
 from .analysis import Analysis
 from .branches import Branches, Skip
-from .host import Host, Snapshot
+from .host import Host
+from .loops import Loop, Passes, Start
 from .steps import NOTHING, PLACE, Block, Exit
 
 FOLLOWED = 100
@@ -23,124 +23,6 @@ FORESEEN = 100
 """Passes after which it is foreseen how many more a loop has that moves the robot, and that nothing
 but its condition ends: from how far that came nearer to its end in the second half of them."""
 _UNMOVED = "does not move the robot, as nothing fulfils the conditions of its motion"
-
-
-_BOUNDS = {"<": 1.0, "<=": 1.0, ">": -1.0, ">=": -1.0}
-"""Comparisons that let a loop go on: the sign of what is left up to the bound."""
-
-
-def to_bound(symbol: str, counter: object, bound: object) -> float | None:
-    """How far a counter is from the bound that it is compared with; None of what is no number."""
-    sign = _BOUNDS.get(symbol)
-    for value in (counter, bound):
-        if not isinstance(value, int | float) or isinstance(value, bool):
-            return None
-    return None if sign is None else sign * (float(bound) - float(counter))  # type: ignore[arg-type]
-
-
-def _nothing() -> None:
-    pass
-
-
-@dataclass(frozen=True, slots=True)
-class Loop(Generic[Block]):
-    """A loop.
-
-    Args:
-        body: what runs again and again.
-        span: in whose line the user answers how often it runs.
-        words: what messages call it, as the text does: ``WHILE TRUE``.
-        reads: names of the data that its condition reads.
-        asks: whether routines of the program have a part in its condition.
-        writes: names of the data that the loop itself steps on.
-        endless: whether no condition ends it.
-        counts: whether it counts to an end by itself, whatever its body does.
-        labels: that stand in it beside those of its body.
-        distance: how far its condition is from ending it, as a number that falls to zero; None
-            where it says nothing of that kind.
-        ended: gives the data that its condition reads values with which it does not let the loop
-            go on, for a loop that is left though they say that it goes on.
-    """
-
-    body: Block
-    span: Span
-    words: str
-    reads: frozenset[str] = NOTHING
-    asks: bool = False
-    writes: frozenset[str] = NOTHING
-    endless: bool = False
-    counts: bool = False
-    labels: frozenset[str] = NOTHING
-    distance: Callable[[], float | None] = _nothing
-    ended: Callable[[], None] = _nothing
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """What had happened in a run when a loop began.
-
-    Args:
-        skips: branches that were not taken.
-        asked: see `Outputs.mark`.
-        moves: that were read.
-        statements: in a row without a move, so far.
-    """
-
-    skips: int
-    asked: int
-    moves: int
-    statements: int
-
-
-@dataclass(slots=True)
-class Passes(Generic[Block]):
-    """One execution of a loop.
-
-    Args:
-        start: when it began.
-
-    Attributes:
-        mark: in what is asked of outputs: since when this pass runs.
-        count: passes that have been read.
-        most: passes to be read, once it is found that nobody knows.
-        watched: names of the data that decide when it ends, as far as was known before this pass.
-        written: names of the data that a pass may write.
-        skips: branches that had not been taken when ``watched`` was found.
-        looked: whether the state before this pass is known; it is not where a jump is met first.
-        snapshot, turned, asked, place, held: this state: data, answers in turn, questions for the
-            position, the position, and outputs.
-        still: all data that a pass may write, while it has not moved the robot and might.
-        begun: for each pass, how many moves had been read before it.
-        left_to_others: whether outputs that its condition reads have just been left to others: it
-            is to be asked again.
-        distance, moved: how far its condition was from ending it half way to `FORESEEN` passes, and
-            how many moves had been read then.
-        polled: whether what its motion depends on has been left to others.
-    """
-
-    loop: Loop[Block]
-    start: Start
-    mark: int = field(init=False)
-    count: int = 0
-    most: int | None = None
-    snapshot: Snapshot | None = None
-    watched: frozenset[str] | None = NOTHING
-    written: frozenset[str] = NOTHING
-    skips: int = 0
-    looked: bool = False
-    turned: int = 0
-    asked: int = 0
-    place: object = None
-    held: dict[str, bool | float] = field(default_factory=dict)
-    still: Snapshot | None = None
-    begun: list[int] = field(default_factory=list)
-    left_to_others: bool = False
-    polled: bool = False
-    distance: float | None = None
-    moved: int = 0
-
-    def __post_init__(self) -> None:
-        self.mark = self.start.asked
 
 
 class Endings(Generic[Block]):

@@ -41,9 +41,10 @@ from typing import Generic
 from ...errors import Span
 from .analysis import Analysis
 from .branches import ActiveBlocks, Branches
-from .endings import Endings, Loop, Passes, Start
+from .endings import Endings
 from .host import Host, Undecided
 from .limits import EndlessError
+from .loops import Loop, Passes, Start
 from .steps import Block
 
 

@@ -18,9 +18,9 @@ from ...program.move import Wait
 from ...program.program import Program
 from ..execution.analysis import Analysis
 from ..execution.course import Course
-from ..execution.endings import Loop
 from ..execution.flow import Flow
 from ..execution.limits import Meter
+from ..execution.loops import Loop
 from ..execution.outputs import Outputs
 from ..execution.provenance import Reads, Source
 from ..execution.scopes import unknown_name

@@ -9,10 +9,10 @@ from typing import Protocol
 from ....core.errors import SourceError
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.course import Course
-from ....core.source.execution.endings import Loop, to_bound
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.loops import Loop, to_bound
 from ..syntax.traversal import calls_in
 from ..syntax.tree import Block, Expression, For, If, Operation, Test, Truth, While
 from ..values.evaluator import Evaluator

@@ -18,9 +18,9 @@ from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.course import Course
-from ....core.source.execution.endings import Loop
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.loops import Loop
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.execution.streams import Streaming

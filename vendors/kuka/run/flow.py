@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution import endings, flow
+from ....core.source.execution import flow, loops
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.transcript import Notes
 from ..syntax.traversal import calls_in
@@ -173,7 +173,7 @@ class Flow:
             side.value if isinstance(side, Number) else self._evaluator.evaluate(side, scope)
             for side in sides
         )
-        return endings.to_bound(symbol, *values)
+        return loops.to_bound(symbol, *values)
 
     def repeat_(self, statement: Repeat, scope: Scope) -> None:
         """``REPEAT … UNTIL``"""
@@ -191,7 +191,7 @@ class Flow:
 
     def loop_(self, statement: Loop, scope: Scope) -> None:
         """``LOOP``"""
-        loop = endings.Loop(statement.body, statement.span, "LOOP", endless=True)
+        loop = loops.Loop(statement.body, statement.span, "LOOP", endless=True)
         self._rules.loop(loop, lambda: True, self._pass(scope))
 
     def for_(self, statement: For, scope: Scope) -> None:
@@ -231,9 +231,9 @@ class Flow:
         def distance() -> float | None:
             counter = self._evaluator.names.value(statement.counter, scope)
             up = not _is_number(step) or step > 0  # type: ignore[operator]
-            return endings.to_bound("<" if up else ">", counter, stop)
+            return loops.to_bound("<" if up else ">", counter, stop)
 
-        loop = endings.Loop(
+        loop = loops.Loop(
             statement.body, span, words, reads=counted, writes=counted, distance=distance
         )
         self._rules.loop(loop, goes_on, run, run_pass)
@@ -258,9 +258,9 @@ class Flow:
         endless: bool,
         scope: Scope,
         ended: bool,
-    ) -> endings.Loop[Block]:
+    ) -> loops.Loop[Block]:
         """A loop; ``ended`` is what its condition is when it has ended."""
-        return endings.Loop(
+        return loops.Loop(
             body,
             condition.span,
             words,
@@ -316,7 +316,7 @@ class Flow:
                 return target - 1  # the label itself
             always = goto is block.statements[index]
             body = self._jumps.setdefault(id(goto), Block(block.statements[target - 1 : index + 1]))
-            loop = endings.Loop(body, goto.span, f"GOTO {goto.name.upper()}", endless=always)
+            loop = loops.Loop(body, goto.span, f"GOTO {goto.name.upper()}", endless=always)
             label = id(block.statements[target - 1])
             try:
                 stays = self._rules.jump(loop, label, id(goto), carry_out)

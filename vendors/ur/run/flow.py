@@ -6,9 +6,9 @@ from __future__ import annotations
 from typing import Protocol
 
 from ....core.program.move import Opaque
-from ....core.source.execution.endings import Loop, to_bound
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
+from ....core.source.execution.loops import Loop, to_bound
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import assigned, calls_in, returns

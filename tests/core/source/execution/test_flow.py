@@ -12,10 +12,11 @@ from flyby.core.errors import SourceError, Span
 from flyby.core.source.execution.analysis import Analysis
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.execution.course import Course
-from flyby.core.source.execution.endings import FOLLOWED, Loop
+from flyby.core.source.execution.endings import FOLLOWED
 from flyby.core.source.execution.flow import Flow
 from flyby.core.source.execution.host import Undecided
 from flyby.core.source.execution.limits import ExecutionLimits, Meter
+from flyby.core.source.execution.loops import Loop
 from flyby.core.source.execution.outputs import Outputs
 from flyby.core.source.execution.steps import PLACE, Exit, Step
 
