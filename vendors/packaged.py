@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -42,9 +43,13 @@ def vendor_of(
     data = folder / "data"
     arms = ArmList(data / "arms.jsonl")
 
+    @cache
+    def labelling() -> Callable[[Robot, NDArray[np.float64]], Configuration | None]:
+        module = import_module(".motion.configuration", package)  # takes time
+        return cast("Callable[[Robot, NDArray[np.float64]], Configuration | None]", module.label)
+
     def label(robot: Robot, q: NDArray[np.float64]) -> Configuration | None:
-        labelling = import_module(".motion.configuration", package)  # takes time
-        return cast("Configuration | None", labelling.label(robot, q))
+        return labelling()(robot, q)
 
     def laid_on(robot: Robot, file: Path) -> Robot:
         reading = import_module(".machine_data", package)  # seldom needed

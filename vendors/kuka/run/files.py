@@ -8,9 +8,11 @@ that stands in none, the folders in it, the one that it stands in, and such a tr
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from itertools import islice, takewhile
+from operator import attrgetter
 from pathlib import Path
 
 from ....core.errors import FlybyError
@@ -71,7 +73,8 @@ def _named(other: Path) -> list[Path]:
 def _near(path: Path) -> dict[str, list[Path]]:
     """Files around the program by lower-case stem, nearest folder first."""
     around = (entry for folder in _folders(path) for entry in _entries(folder))
-    return _by_stem(path, islice(around, _MOST_FILES))
+    named = (e.path for e in islice(around, _MOST_FILES) if e.name.lower().endswith(SUFFIXES))
+    return _by_stem(path, map(Path, named))
 
 
 def _by_stem(path: Path, around: Iterable[Path]) -> dict[str, list[Path]]:
@@ -91,7 +94,7 @@ def _folders(path: Path) -> list[Path]:
     if tree:
         around = list(_inside(tree[-1], _DEEPEST))
     else:
-        beside = [f for f in _subfolders(own.parent) if f.name.lower() in _TREE]
+        beside = _subfolders(own.parent, _TREE)
         around = [*_inside(own, _DEEPEST), own.parent, *beside]
     others = [f for f in dict.fromkeys(around) if f != own]
     # What is farther away in the tree comes later.
@@ -113,14 +116,22 @@ def _shared(one: Path, other: Path) -> int:
     return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
-def _subfolders(root: Path) -> list[Path]:
-    return [e for e in _entries(root) if e.is_dir() and not e.name.startswith(".")]
+def _subfolders(root: Path, called: Container[str] | None = None) -> list[Path]:
+    """The folders in one that are not hidden; of those ``called`` so alone, if that is said."""
+    return [
+        Path(entry.path)
+        for entry in _entries(root)
+        if not entry.name.startswith(".")
+        and (called is None or entry.name.lower() in called)
+        and (Path(entry.path) if entry.is_symlink() else entry).is_dir()  # links may go in circles
+    ]
 
 
-def _entries(folder: Path) -> list[Path]:
-    """What is in a folder, as far as it may be looked at."""
+def _entries(folder: Path) -> list[os.DirEntry[str]]:
+    """What is in a folder, by name, as far as it may be looked at."""
     try:
-        return sorted(islice(folder.iterdir(), _MOST_FILES))
+        with os.scandir(folder) as found:
+            return sorted(islice(found, _MOST_FILES), key=attrgetter("name"))
     except OSError:
         return []
 
@@ -154,6 +165,8 @@ def _shared_names(paths: list[Path]) -> set[str]:
 def _names(text: str) -> set[str]:
     """Words of the lines that declare something GLOBAL."""
     found: set[str] = set()
+    if "global" not in text.lower():  # far quicker than the pattern
+        return found
     for match in _GLOBAL.finditer(text):
         end = text.find("\n", match.start())
         line = text[match.end() : end if end >= 0 else len(text)]
