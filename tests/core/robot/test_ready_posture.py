@@ -71,3 +71,25 @@ def test_what_a_start_does_not_help_is_refused_as_before() -> None:
             robot="abb/irb120",
         )
         flyby.emulate(program)
+
+
+def test_numbers_made_of_the_present_place_are_no_numbers_from_nowhere() -> None:
+    text = """MODULE letters
+  VAR pos pen;
+  PROC main()
+    VAR robtarget here;
+    here:=CRobT();
+    pen:=[here.trans.x-60,here.trans.y,here.trans.z];
+    MoveL [pen,[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;
+    pen.y:=pen.y+40;
+    MoveL [pen,[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;
+  ENDPROC
+ENDMODULE
+"""
+    program = flyby.read(text, robot="abb/irb1600-6-145")
+    assert "asks where the robot stands before its first move" in str(program.notes[0])
+    robot = find_robot("abb/irb1600-6-145")
+    _, stands = robot.forward(np.array(ready_posture(robot)))
+    first = program.moves[0].target.pose.position
+    np.testing.assert_allclose(first, stands - (0.06, 0, 0), atol=1e-6)
+    assert flyby.emulate(program).faults == ()

@@ -212,8 +212,14 @@ class RobotFunctions:
         if why is None:
             unmoved = "the robot has not moved yet: give a start"
             why = "name the robot" if self.position.robot is None else unmoved
+            # Of a place no default is taken: numbers made of it are open, as the place itself is.
+            return self._not_known(evaluator, call, why, lost=True)
+        return self._not_known(evaluator, call, why)
+
+    @staticmethod
+    def _not_known(evaluator: Evaluates, call: Call, why: str, lost: bool = False) -> Unknown:
         key = evaluator.answers.key(call.span)
-        return Unknown(f"the value of {call.text}() ({why})", call.span, key)
+        return Unknown(f"the value of {call.text}() ({why})", call.span, key, lost=lost)
 
     @staticmethod
     def _option(call: Call, name: str) -> Expression | None:

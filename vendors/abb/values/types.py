@@ -27,7 +27,8 @@ class Unknown:
         span: where it came into the program.
         key: under which the user may answer it.
         nominal: what it is if all that is not known is at its default; None if that is none.
-        lost: whether the text that gives it is damaged, so that no default can be taken for it.
+        lost: whether no default can be taken for it, nor for what is made of it: the text that
+            gives it is damaged, or it is where the robot stands.
     """
 
     reason: str
