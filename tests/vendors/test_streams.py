@@ -139,7 +139,40 @@ end
 """
 
 
-@pytest.mark.parametrize(("text", "name"), [(IN_A_BRANCH, "servoj"), (IN_A_THREAD, "speedj")])
+IN_A_THREAD_OF_A_THREAD = """def demo():
+  global goal = [0, 0, 0, 0, 0, 0]
+  def hold():
+    servoj(goal, t=0.008, lookahead_time=0.1, gain=300)
+  end
+  thread steer():
+    while True:
+      hold()
+    end
+  end
+  thread listen():
+    local steering = run steer()
+    while True:
+      got = socket_read_ascii_float(6, "pc")
+      if got[0] != 6:
+        break
+      end
+      goal = [got[1], got[2], got[3], got[4], got[5], got[6]]
+    end
+    join steering
+  end
+  socket_open("10.0.0.2", 50001, "pc")
+  listening = run listen()
+  join listening
+  socket_close("pc")
+end
+"""
+"""As drivers do: one thread listens, and starts the one that drives."""
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [(IN_A_BRANCH, "servoj"), (IN_A_THREAD, "speedj"), (IN_A_THREAD_OF_A_THREAD, "servoj")],
+)
 def test_a_program_that_only_streams_asks_for_the_stream_and_drives_it(text, name, tmp_path):
     file, answers = tmp_path / "demo.script", tmp_path / "answers.toml"
     file.write_text(text)

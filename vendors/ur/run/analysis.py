@@ -118,16 +118,22 @@ class ScriptTree:
 
     def _assignments(self, name: str, storages: tuple[str, ...]) -> Iterator[tree.Assign]:
         """Those in a function and in all that it calls."""
+        for body in self.reached(name):
+            for statement in all_statements(body):
+                if isinstance(statement, tree.Assign) and statement.storage in storages:
+                    yield statement
+
+    def reached(self, name: str) -> Iterator[tree.Block]:
+        """Bodies of a function and of all functions and threads that it calls or starts, and they
+        in turn."""
         todo = [name]
-        reached = {name}
+        met = {name}
         while todo:
             for body in self.bodies([todo.pop()]):
-                called = calls_of(body) - reached
-                reached |= called
-                todo += called
-                for statement in all_statements(body):
-                    if isinstance(statement, tree.Assign) and statement.storage in storages:
-                        yield statement
+                called = calls_of(body) - met
+                met |= called
+                todo += sorted(called)
+                yield body
 
 
 def _called(expression: tree.Expression) -> Iterator[str]:

@@ -33,7 +33,7 @@ _CALL = 200
 """Elements of a list that are copied in the time in which a function is entered and left."""
 SKIPPED = Kept("an answer says to skip", device=True)
 _MISSING = Kept("", device=True)
-REMOTE = Kept("call remote procedures and add-ons")
+REMOTE = Kept("call remote procedures and add-ons", device=True)
 _UNKNOWN_TIME = Kept("wait for a time that is not known", stops=True)
 
 

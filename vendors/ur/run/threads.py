@@ -16,7 +16,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
-from ..syntax.traversal import all_calls
+from ..syntax.traversal import calls_of
 from ..syntax.tree import Block, Call, StartThread, ThreadEnd
 from ..values.evaluator import Evaluation, evaluate
 from ..values.instructions import STREAMS, Kept, kept, streamed
@@ -134,7 +134,7 @@ def start(run: ThreadsRun, node: StartThread, scope: Scope) -> Value:
         _carry_out(run, function, node, scope, thread)
     else:
         run.keep(node, _STARTED, name)
-        called = (called for body in bodies for called in sorted(all_calls(body)))
+        called = (c for body in run.tree.reached(name) for c in sorted(calls_of(body)))
         stream = next((called for called in called if kept(called) is STREAMS), None)
         if stream is not None:
             run.guided.append((stream, run.texts.span_of(node)))

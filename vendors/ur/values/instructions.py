@@ -41,7 +41,7 @@ MOVES = words("movej movel movep movec optimovej optimovel")
 """The moves that are carried out."""
 
 STREAMS = Kept(
-    "drive the robot by streams, forces or hand; it is taken to stay where it is",
+    "drive the robot by streams, forces or hand (it is taken to stay where it is)",
     words("servoj servoc servol speedj speedl force_mode force_mode_example freedrive_mode")
     | words("teach_mode direct_torque torque_command screw_driving interpreter_mode"),
     stops=True,
@@ -66,6 +66,7 @@ ADD_ONS = Kept(
         *("schunk_", "egp_", "egh_", "zimmer_", "ieg_", "wsg_", "gripkit_", "schmalz_"),
         *("ecbpi_", "cobotpump_", "piab_", "festo_", "dh_gripper_"),
     ),
+    device=True,
 )
 """They may set outputs."""
 
