@@ -24,10 +24,7 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 
 from ...core.arrays import FloatArray, IntArray
-from ...core.sqp import BackendKind
-from ...core.sqp.algebra.matrices import SparseMatrix, Sparsity, identity
-from ...core.sqp.qp.backends import make_backends
-from ...core.sqp.qp.problem import QpSolution, QpStatus, QuadraticProgram, failed
+from ...core.sqp.qp.dual_active_set import DiagonalProgram, minimum
 
 _FIRST_PRICE, _PRICE_MARGIN, _LARGEST_PRICE = 10.0, 2.0, 1e5
 _TAKEN, _GOOD, _POOR = 0.05, 0.6, 0.25
@@ -36,6 +33,8 @@ _REACH = 8.0
 """Trust boxes within which a remembered gradient counts."""
 _MOST_KINKS = 30
 _DAMPING = 1e-3
+_NO_BEND = 1e-6
+"""Curvature along t and s, which the subproblem's solver needs; it changes nothing that counts."""
 _TINY_BOX = 2e-4
 _SECOND_ORDER = 0.5
 """Share of the promised fall below which a violated step is corrected."""
@@ -349,55 +348,38 @@ def _subproblem(
     constraints: FloatArray,
     box: FloatArray,
 ) -> _Step:
-    """Over (d, t, s), with d of what is free in units of the box: everything is of size one."""
+    """Over (d, t, s), with d of what is free in units of the box, t in units of what the steepest
+    plane falls there, and s in units of what constraints change: everything is of size one."""
     point, free = state.point, np.flatnonzero(model.upper > model.lower)
     n, box = len(free), box[free]
     slopes, heights = _planes(model, state)
-    slopes, jacobian = slopes[:, free], jacobian[:, free]
-    rows = np.zeros((len(heights) + len(constraints), n + 2))
-    rows[: len(heights), :n] = -slopes * box
-    rows[: len(heights), n] = 1.0
-    rows[len(heights) :, :n] = jacobian * box
-    rows[len(heights) :, n + 1] = 1.0
-    least = np.concatenate([heights, -constraints])
-    linear = np.zeros(n + 2)
-    linear[n], linear[n + 1] = 1.0, state.price
-    size = float(np.abs(slopes * box).max(initial=0.0))
-    damping = np.concatenate([np.full(n, _DAMPING * size), np.zeros(2)])
+    slopes, jacobian = slopes[:, free] * box, jacobian[:, free] * box
+    size = float(np.abs(slopes).max(initial=0.0)) or 1.0
+    depth = float(np.abs(jacobian).max(initial=0.0)) or 1.0
+    price = state.price * depth / size
+    k = len(heights)
+    rows = np.zeros((k + len(constraints), n + 2))
+    rows[:k, :n] = slopes / -size
+    rows[:k, n] = 1.0
+    rows[k:, :n] = jacobian / depth
+    rows[k:, n + 1] = 1.0
     below, above = ((bound - point.x)[free] / box for bound in (model.lower, model.upper))
-    lower = np.concatenate([np.maximum(-1.0, below), [-np.inf, 0.0]])
-    upper = np.concatenate([np.minimum(1.0, above), [np.inf, np.inf]])
-    qp = QuadraticProgram(
-        SparseMatrix(identity(n + 2), damping),
-        linear,
-        _full(rows),
-        least,
-        np.full(len(least), np.inf),
-        np.minimum(lower, 0.0),
-        np.maximum(upper, 0.0),
+    program = DiagonalProgram(
+        np.concatenate([np.full(n, _DAMPING), [_NO_BEND, _NO_BEND * max(price, 1.0)]]),
+        np.concatenate([np.zeros(n), [1.0, price]]),
+        rows,
+        np.concatenate([heights / size, -constraints / depth]),
+        np.concatenate([np.clip(below, -1.0, 0.0), [-np.inf, 0.0]]),
+        np.concatenate([np.clip(above, 0.0, 1.0), [np.inf, np.inf]]),
     )
-    found = _solved(qp)
-    price = float(np.abs(found.y[len(heights) :]).sum())
-    slack = max(0.0, float(found.d[n + 1]))
+    found = minimum(program)
     d = np.zeros(len(point.x))
-    d[free] = found.d[:n] * box
-    return _Step(d, -float(found.d[n]), slack, price)
-
-
-def _full(matrix: FloatArray) -> SparseMatrix:
-    """A matrix all of whose entries count, zeros too."""
-    m, n = matrix.shape
-    pattern = Sparsity((m, n), np.tile(np.arange(m), n), m * np.arange(n + 1))
-    return SparseMatrix(pattern, matrix.T.ravel())
-
-
-def _solved(qp: QuadraticProgram) -> QpSolution:
-    """The solution by the first back end that finds it; no step where none does."""
-    for backend in make_backends(BackendKind.CLARABEL, True):
-        found = backend.solve(qp, None)
-        if found.status is QpStatus.SOLVED:
-            return found
-    return failed(qp)
+    if found is None:
+        return _Step(d, 0.0, 0.0, 0.0)
+    values, multipliers = found
+    d[free] = values[:n] * box
+    largest = float(multipliers[k:].sum()) * size / depth
+    return _Step(d, -float(values[n]) * size, float(values[n + 1]) * depth, largest)
 
 
 def _planes(model: SearchModel[P], state: _State[P]) -> tuple[FloatArray, FloatArray]:
