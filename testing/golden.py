@@ -6,7 +6,7 @@ author writes down, in a TOML file, texts as controllers run them beside what th
     none = ["load"]                        # what the language has no words for
 
     [[robots]]                             # numbers of the data sheet
-    name = "swift-6"
+    name = "arm-1"
     lower_deg = [-170, -90, -120, -180, -120, -350]
     upper_deg = [170, 120, 120, 180, 120, 350]
     velocity_deg_s = [200, 200, 260, 360, 360, 450]
@@ -14,7 +14,7 @@ author writes down, in a TOML file, texts as controllers run them beside what th
 
     [[texts]]
     about = "a joint move, and a line beside an output"
-    robot = "swift-6"                      # that drives it
+    robot = "arm-1"                      # that drives it
     files."main.acme" = '''…'''            # the one that is read comes first
 
     [[texts.statements]]

@@ -33,8 +33,8 @@ BLOCKS = {
 }
 LANGUAGES = {"python", "sh", "toml", "text"}
 """Of code in pages. `sh` without placeholders is run by tests/cli/test_readme.py."""
-BESIDE = {"docs/guides/plugins.md": "examples/fourth_vendor/page.py"}
-"""Where the code of a page would stand that reads files beside itself."""
+ARM = "testing/skeleton/arm-1.toml.txt"
+"""The robot that stands beside the plugin of a page."""
 PARTS = (
     "benchmarks|cli|core|docs|drawing|examples|identification|problems|tasks|testing|tests|"
     "validation|vendors"
@@ -64,7 +64,9 @@ def _run(page: str, folder: Path) -> Ran:
     # Classes of a page look for the module that they stand in.
     module = sys.modules["page"] = ModuleType("page")
     names: dict[str, Any] = vars(module)
-    names["__file__"] = str(ROOT / BESIDE.get(page, page))
+    arm = (ROOT / ARM).read_text("utf-8").replace("@name@", "acme")
+    (folder / "arm-1.toml").write_text(arm, "utf-8")
+    names["__file__"] = str(folder / "page.py")
     printed = io.StringIO()
     with contextlib.chdir(folder), contextlib.redirect_stdout(printed):
         for block in BLOCKS[page]:

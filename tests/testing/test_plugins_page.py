@@ -33,10 +33,13 @@ def blocks(language: str) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def page() -> ModuleType:
-    """The page as a module that stands beside the example's robot."""
+def page(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    """The page as a module that stands beside the template's robot."""
+    folder = tmp_path_factory.mktemp("acme")
+    arm = (ROOT / "testing" / "skeleton" / "arm-1.toml.txt").read_text("utf-8")
+    (folder / "arm-1.toml").write_text(arm.replace("@name@", "acme"), "utf-8")
     module = ModuleType("flyby_acme")
-    module.__file__ = str(ROOT / "examples" / "fourth_vendor" / "page.py")
+    module.__file__ = str(folder / "page.py")
     sys.modules[module.__name__] = module  # where dataclasses look for it
     for block in blocks("python"):
         exec(compile(block, "docs/guides/plugins.md", "exec"), vars(module))
@@ -60,7 +63,7 @@ def test_the_page_is_a_plugin(page: ModuleType, monkeypatch: pytest.MonkeyPatch)
     vars(point).update(dist=SimpleNamespace(name="flyby-acme"))
     registry = Registry.discover([point])
     assert registry.broken == ()
-    assert registry.robot_names == ("acme/swift-6",)
+    assert registry.robot_names == ("acme/arm-1",)
 
 
 def test_the_provenance_of_the_page_is_read() -> None:
@@ -125,7 +128,7 @@ def test_a_language_without_arcs_passes_the_suite(page: ModuleType, tmp_path: Pa
 
 def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:
     acme = page.acme()
-    robot = acme.robot("swift-6")
+    robot = acme.robot("arm-1")
     text = "POINT P[1] 0 10 20 0 50 0\nMOVEJ P[1] 50 STOP\n"
     program = acme.read(text, "a.acme")
     assert dict(acme.write(program, robot)) == {"main.acme": text}

@@ -169,10 +169,6 @@ class LineLanguage:
         name = name if name[0].isalpha() else f"P_{name}"
         return (name.upper() if self.capitals else name)[: self.longest_name or None]
 
-    def number(self, value: float) -> str:
-        """A number as the language writes it."""
-        return nine_decimals(value)
-
     def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
         """The numbers of a speed or zone, in the order in which a move has them."""
         words, settings = self.grammar.words, self.grammar.settings
@@ -215,16 +211,7 @@ class LineLanguage:
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `core.language.Patcher`."""
-        chosen = PatcherOptions.of(options, f"{self.name} patcher")
-        return patch_lines(
-            program,
-            chosen,
-            self.numbers,
-            self.number,
-            self.own,
-            self.rewritten,
-            self.trailing,
-        )
+        return patch_lines(program, PatcherOptions.of(options, f"{self.name} patcher"), self)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `core.language.Writer`; the option is ``opaque``."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ...errors import InputError
@@ -28,7 +28,6 @@ class MotionWords:
         stop: what stands for none; None where a zone of size 0 does.
         unstated: what stands for a speed of which a move states nothing.
         speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
-        number: a number as a motion has it.
         share: how a share of acceleration is written, of its ``number`` in %.
         motion: a whole motion: of its ``kind`` (J, L, C), ``points``, ``speed``, ``zone`` and
             ``share``.
@@ -41,7 +40,6 @@ class MotionWords:
     unstated: str = ""
     speed: str = "{number}{unit}"
     zone: str = "{word}{numbers}"
-    number: Callable[[float], str] = nine_decimals
     share: str = ""
     motion: str = "MOVE{kind} {points} {speed} {zone} {share}"
 
@@ -125,7 +123,7 @@ class MotionWords:
             points=" ".join(points),
             speed=self.speed_text(move),
             zone=self.zone_text(move),
-            share="" if share == 1.0 else self.share.format(number=self.number(100 * share)),
+            share="" if share == 1.0 else self.share.format(number=nine_decimals(100 * share)),
         )
         return " ".join(said.split())
 
@@ -134,7 +132,7 @@ class MotionWords:
         found = self._stated(move, move.speed)
         if found is None:
             return self.unstated
-        return self.speed.format(unit=found[0], number=self.number(found[1]))
+        return self.speed.format(unit=found[0], number=nine_decimals(found[1]))
 
     def zone_text(self, move: Move) -> str:
         """The words of a move's zone."""
@@ -145,7 +143,7 @@ class MotionWords:
         kinds = {kind: word for word, kind in self.zones.items()}
         first = next(iter(self.zones))
         word = kinds[move.zone.kind] if isinstance(move.zone, VendorZone) else first
-        return self.zone.format(word=word, numbers=",".join(map(self.number, numbers)))
+        return self.zone.format(word=word, numbers=",".join(map(nine_decimals, numbers)))
 
     def own(self, use: Use) -> Iterator[Edit]:
         """Other words at the move itself.

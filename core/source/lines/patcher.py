@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
-from functools import partial
+from typing import Protocol
 
 from ...errors import InputError, Span
 from ...program.move import Move
@@ -18,43 +18,43 @@ from ..patch.edits import Edit, reading_of
 from ..patch.plan import PatchPlan, Wish, patch_program
 from ..patch.uses import MovePart, Use, UseKind
 from ..reading import Files
-from ..text.numerals import with_decimals_of
+from ..text.numerals import nine_decimals, with_decimals_of
 from ..write.options import PatcherOptions
 
-NumbersOf = Callable[[UseKind, MovePart, Move], Sequence[float | None]]
-"""The numbers of a part of a move, in the order in which a line has them; None for one that may be
-anything."""
-OwnNumbers = Callable[[Use], Iterable[Edit]]
-"""What gives a part of a move numbers, or words, of its own; what it puts in right behind the move
-stands behind its line, and the comment there."""
 Text = Callable[[Span], str]
-Rewritten = Callable[[Use, Text], Mapping[Span, str]]
-"""What literals that are more than a number must say for a part, by their places."""
 
 
-def patch_lines(
-    program: Program,
-    options: PatcherOptions,
-    numbers: NumbersOf,
-    number: Callable[[float], str],
-    own: OwnNumbers | None = None,
-    rewritten: Rewritten = lambda use, text: {},
-    comment: str = "",
-) -> Files:
+class Patching(Protocol):
+    """What a language says of its numbers (`core.source.lines.language.LineLanguage`)."""
+
+    trailing: str
+
+    def numbers(self, kind: UseKind, part: MovePart, move: Move) -> Sequence[float | None]:
+        """Of a part of a move, in the order in which a line has them; None for one that may be
+        anything."""
+        ...
+
+    def own(self, use: Use) -> Iterable[Edit]:
+        """What gives a part of a move numbers, or words, of its own; what it puts in right behind
+        the move stands behind its line, and the comment there."""
+        ...
+
+    def rewritten(self, use: Use, text: Text) -> Mapping[Span, str]:
+        """What literals that are more than a number must say for a part, by their places."""
+        ...
+
+
+def patch_lines(program: Program, options: PatcherOptions, language: Patching) -> Files:
     """The files of a program with the numbers that it has now.
 
     A number is changed where it stands, in a point or at the move, if all moves that read it are to
     have the same; else, as the options say, the change is refused, or the move gets numbers of its
-    own in the place of the point.
+    own.
 
     Args:
         program: read by `interpreter.run_lines`, then changed.
         options: what may get numbers of its own.
-        numbers: of a part; what the language cannot say it refuses (`InputError`).
-        number: a number as the language writes it.
-        own: how a move gets numbers of its own; None for its numbers in the place of the point.
-        rewritten: literals that are not changed number by number.
-        comment: what begins a comment behind a statement; ``""`` for none.
+        language: that it is in.
 
     Returns:
         The files that changed, by name.
@@ -67,50 +67,39 @@ def patch_lines(
     def text_at(span: Span) -> str:
         return reading.files[span.file].text[span.start : span.end]
 
-    literals = _Literals(text_at, numbers, number, rewritten)
-
     def behind(edit: Edit, use: Use) -> Edit:
         at = edit.span
         if not at.start == at.end == use.statement.end:
             return edit
         rest = re.split(r"[\r\n]", reading.files[at.file].text[at.end :], maxsplit=1)[0]
+        comment = language.trailing
         if rest.strip() and not (comment and rest.strip().startswith(comment)):
             return edit
         end = at.end + len(rest.rstrip())
         return replace(edit, span=Span(at.file, at.line, at.column, end, end))
 
     def edits(plan: PatchPlan) -> list[Edit]:
-        write = own or partial(_in_place_of_point, literals)
-        made = ((use, edit) for use in plan.changes for edit in _edits(plan, use, write))
+        made = ((use, edit) for use in plan.changes for edit in _edits(plan, use, language))
         return [behind(edit, use) for use, edit in made]
 
-    return patch_program(program, options, literals, edits)
+    return patch_program(program, options, _Literals(text_at, language), edits)
 
 
 class _Literals:
     """What the numbers of the lines must say; see `core.source.patch.plan.Literals`."""
 
-    def __init__(
-        self, text: Text, numbers: NumbersOf, number: Callable[[float], str], rewritten: Rewritten
-    ) -> None:
+    def __init__(self, text: Text, language: Patching) -> None:
         self.text = text
-        self._numbers = numbers
-        self._number = number
-        self._rewritten = rewritten
-
-    def written(self, use: Use) -> list[str]:
-        """The numbers of a part as a line has them."""
-        numbers = self._numbers(use.kind, use.new, use.move)
-        return [self._number(value) for value in numbers if value is not None]
+        self._language = language
 
     def wish(self, use: Use) -> Wish:
         """What the literals of a part must say."""
         spans = use.origin.numbers
-        old = self._numbers(use.kind, use.old, use.move)
-        new = self._numbers(use.kind, use.new, use.move)
+        old = self._language.numbers(use.kind, use.old, use.move)
+        new = self._language.numbers(use.kind, use.new, use.move)
         if len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
             return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
-        texts = dict(self._rewritten(use, self.text))
+        texts = dict(self._language.rewritten(use, self.text))
         missing = False
         for span, before, value in zip(spans, old, new, strict=True):
             if span is None:
@@ -130,14 +119,14 @@ class _Literals:
         """A number in the unit that it has in the text, and below an override that is on it:
         speeds and zones grow as their numbers do."""
         if use.kind not in (UseKind.SPEED, UseKind.ZONE) or not before:
-            return self._number(value)
+            return nine_decimals(value)
         try:
             stated = float(self.text(span))
         except ValueError:
             stated = before
         if math.isclose(stated, before, rel_tol=1e-9) or stated == 0:
-            return self._number(value)
-        return self._number(stated * (value / before))
+            return nine_decimals(value)
+        return nine_decimals(stated * (value / before))
 
 
 def _same_words(use: Use) -> bool:
@@ -154,11 +143,7 @@ def _stated(speed: Speed) -> list[bool]:
     return [getattr(speed, field.name) is not None for field in fields(speed)]
 
 
-def _in_place_of_point(literals: _Literals, use: Use) -> list[Edit]:
-    return [Edit(use.origin.span, " ".join(literals.written(use)), use.index)]
-
-
-def _edits(plan: PatchPlan, use: Use, own: OwnNumbers) -> list[Edit]:
+def _edits(plan: PatchPlan, use: Use, language: Patching) -> list[Edit]:
     try:
         against = plan.against(use)
         if plan.changeable(use) and plan.wish(use).complete and not against:
@@ -173,6 +158,6 @@ def _edits(plan: PatchPlan, use: Use, own: OwnNumbers) -> list[Edit]:
         else:
             plan.check_computed()
         plan.check_executions(use)
-        return list(own(use))
+        return list(language.own(use))
     except InputError as error:
         raise use.error(str(error)) from None

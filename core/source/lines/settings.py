@@ -28,8 +28,6 @@ from .statements import Line, Numbers, Operand, Set
 
 _LONGEST = 1000
 """Characters of a line that is looked at."""
-NumberText = Callable[[float], str]
-"""A number as the language writes it."""
 
 
 @dataclass(frozen=True)
@@ -178,31 +176,29 @@ class Setting:
             return None
         return found[0], (found[1], *further)
 
-    def argument(self, unit: str, numbers: Sequence[float], number: NumberText) -> str:
+    def argument(self, unit: str, numbers: Sequence[float]) -> str:
         """What stands behind the word."""
-        said = [number(value) for value in numbers]
+        said = [nine_decimals(value) for value in numbers]
         for word, meant in self.words.items():
-            if said == [number(value) for value in meant]:
+            if said == [nine_decimals(value) for value in meant]:
                 return word
         gap = " " if unit[:1].isalpha() else ""
         return f"{self.opening}{', '.join(said)}{gap}{unit}"
 
-    def said(self, move: Move, part: MovePart, number: NumberText) -> str | None:
+    def said(self, move: Move, part: MovePart) -> str | None:
         """The line that gives a move what it states, without ``always``; None if it states none of
         it."""
         found = self.stated(move, part)
         if found is None:
             return None
-        argument = self.argument(*found, number)
+        argument = self.argument(*found)
         return f"{self.word}{self.sign}{argument}" if argument else self.word
 
-    def changed(
-        self, text: str, unit: str, old: Sequence[float], new: Sequence[float], number: NumberText
-    ) -> str:
+    def changed(self, text: str, unit: str, old: Sequence[float], new: Sequence[float]) -> str:
         """What stands behind the word with other numbers; those that stay, stay as they are."""
         if tuple(old) == tuple(new):
             return text
-        said = self.argument(unit, new, number)
+        said = self.argument(unit, new)
         found = re.fullmatch(self._argument, text, re.IGNORECASE)
         if not text:
             return f"{self.sign}{said}"
@@ -212,11 +208,11 @@ class Setting:
         for k, one in enumerate(given):
             if old[k] != new[k]:
                 own = one.strip()
-                given[k] = one.replace(own, with_decimals_of(own, number(new[k])))
+                given[k] = one.replace(own, with_decimals_of(own, nine_decimals(new[k])))
         for k in range(len(given), self.count):
             left_out = self.omitted[k] if self.omitted else new[k - 1]
-            if number(new[k]) != number(left_out):
-                given += [f" {number(value)}" for value in new[len(given) : k + 1]]
+            if nine_decimals(new[k]) != nine_decimals(left_out):
+                given += [f" {nine_decimals(value)}" for value in new[len(given) : k + 1]]
         start, end = found.span("number")
         return f"{text[:start]}{','.join(given)}{text[end:]}"
 
@@ -243,7 +239,6 @@ class Settings:
     Args:
         settings: those of speeds in the order in which a move's numbers have them.
         zone: kind of the zones that they set.
-        number: a number as the language writes it.
         flying: whether motions themselves say that there is a zone (``MOVEFLY``, ``CP``): of a stop
             nothing is set.
 
@@ -253,7 +248,6 @@ class Settings:
 
     settings: tuple[Setting, ...] = ()
     zone: type[Radius] | ZoneKind = Radius
-    number: NumberText = nine_decimals
     flying: bool = False
     _words: frozenset[str] = field(init=False, repr=False)
 
@@ -353,7 +347,7 @@ class Settings:
         """What is said before a move; ``said``: the lines that hold, by word, kept here."""
         for kind, part in ((UseKind.SPEED, move.speed), (UseKind.ZONE, move.zone)):
             for one in self._counting(kind, part):
-                line = one.said(move, part, self.number)
+                line = one.said(move, part)
                 if line is not None and said.get(one.word) != line:
                     said[one.word] = line
                     yield line if one.always is None else f"{line} {one.always}"
@@ -381,7 +375,7 @@ class Settings:
             old, new = one.stated(use.move, use.old), one.stated(use.move, use.new)
             if one.whole and mine and place and old and new:
                 said, wanted = text(place), new[1] if one in counting else old[1]
-                made[place] = one.changed(said, new[0], old[1], wanted, self.number)
+                made[place] = one.changed(said, new[0], old[1], wanted)
         return made
 
     def own(self, use: Use) -> Iterator[Edit]:
@@ -394,7 +388,7 @@ class Settings:
         put_in, put_back = "", ""
         was = self._counting(use.kind, use.old)
         for one in self._counting(use.kind, use.new):
-            held, new = (one.said(use.move, part, self.number) for part in (use.old, use.new))
+            held, new = (one.said(use.move, part) for part in (use.old, use.new))
             if new and held != new:
                 put_in += f"{new}{gap}"
                 held = held if one.always is None and one in was else None
