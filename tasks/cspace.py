@@ -60,8 +60,9 @@ def cspace_with(program: Program, options: CspaceOptions) -> ProgramPlane:
     """
     import numpy as np
 
+    from ..core.collision.handled_scenes import scenes_along
     from ..core.collision.joint_plane import joint_plane
-    from ..core.collision.scene.scene import CollisionScene
+    from .results.cell_course import CellCourse
     from .results.joint_planes import ProgramPlane
 
     program, setup = with_setup(program, options)
@@ -73,7 +74,8 @@ def cspace_with(program: Program, options: CspaceOptions) -> ProgramPlane:
         raise OptionError(f"{spelt('held')} and {spelt('move')} both say where joints are held")
     cell = setup.surroundings(program, no_floor=options.no_floor)
     options.say("driving the program")
-    run = controller_of(program, setup).run(program, start_of(program))
+    course = CellCourse.of(program, setup)
+    run = controller_of(program, setup).run(course.program, start_of(program))
     ends, moves = run.path.route.ends.q, run.path.route.moves
     index = 0
     held = ends[0, 0]
@@ -88,7 +90,9 @@ def cspace_with(program: Program, options: CspaceOptions) -> ProgramPlane:
     pair = axes[0], axes[1]
     window = _window(robot, run.path.q, pair, held, whole=options.whole)
     options.say(f"looking at {options.steps**2} postures")
-    scene = CollisionScene(cell, program.moves[moves[index]].tool)
+    move = moves[index]
+    scenes = scenes_along(cell, course.handling, program, lambda: run.path, cell.clearance)
+    scene = scenes(program.moves[move].tool, move)
     plane = joint_plane(scene, held, pair, window, options.steps, cell.clearance)
     return ProgramPlane(plane, robot, run)
 

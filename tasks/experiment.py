@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -95,9 +95,10 @@ def experiment_with(options: ExperimentOptions) -> DesignedExperiment:
     from .results.experiments import DesignedExperiment
 
     setup = setup_of(options)
-    cell = setup.surroundings(no_floor=options.no_floor)
+    cell, notes = setup.before_programs(no_floor=options.no_floor)
     plan = _plan(setup.robot, options, _tool(options.tool, cell))
     made = design(setup.vendor, cell, plan, bare=setup.cell is None, say=options.say)
+    made = replace(made, notes=(*(note.message for note in notes), *made.notes))
     file = None if setup.cell is None else setup.cell.file
     return DesignedExperiment(made, cell, file, options.inputs())
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,7 +47,7 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
     from .painting.choices import drive_of, limits_of, plan_of, region_of, station_of
 
     drive = drive_of(options)
-    station = station_of(options, drive)
+    station, notes = station_of(options, drive)
     options.say("reading the part")
     from ..problems.paint.painting import Wishes
     from ..problems.paint.painting import paint as find
@@ -72,6 +73,7 @@ def paint_with(part: str | Path, footprint: str | Path, options: PaintOptions) -
         return PaintedPart(source, painting, None, {}, inputs)
     options.say("the robot's way of holding the gun")
     made, sources = _executed(painting, station, drive, limits.speed, options.say)
+    made = replace(made, notes=(*notes, *made.notes))
     return PaintedPart(source, painting, made, sources, inputs, station)
 
 

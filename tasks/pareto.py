@@ -13,10 +13,12 @@ from .motors import MotorOptions
 from .optimize import effort_of
 from .options.entries import COUNT, Extent, choice, number
 from .options.keywords import by_keywords
+from .results.cell_course import CellCourse
 from .setup import controller_of, with_setup
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
+    from ..problems.improve.energy import FrontPoint
     from ..problems.improve.progress import Progress
     from .results.fronts import ProgramFront
 
@@ -62,9 +64,16 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
                     f"{spelt(name)} needs a cell ({spelt('cell')}): without one, only speeds change"
                 )
     scope = EnergyScope.SPEEDS if setup.cell is None else EnergyScope(options.change)
-    wishes = task_of(program, setup, options)
+    course = CellCourse.of(program, setup)
+    wishes = task_of(program, setup, options, handling=course.handling)
     task = EnergyTask(scope, options.consumption(setup.robot), wishes)
     texts = ProgramTexts(setup, program, own=True, anew=True, keep=True)
+    read: list[tuple[Program, Program]] = []
+
+    def read_back(changed: Program) -> Program:
+        own = texts.read_back(course.unloaded(changed))
+        read.append((course.loaded(own), own))
+        return read[-1][0]
 
     def report(state: Progress) -> None:
         options.say(
@@ -73,16 +82,27 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
 
     made = pareto(
         controller_of(program, setup),
-        program,
+        course.program,
         setup.cell,
         task,
         options.points,
         effort_of(options.starts, None, options.seed),
         setup.vendor.speaks,
-        texts.read_back,
+        read_back,
         report,
     )
-    made = replace(made, notes=(*idle_notes(program, setup, options, wishes), *made.notes))
+    own = {id(loaded): program for loaded, program in read}
+
+    def given_back(point: FrontPoint) -> FrontPoint:
+        known = own.get(id(point.program))
+        return replace(point, program=known or course.unloaded(point.program))
+
+    made = replace(
+        made,
+        given=given_back(made.given),
+        points=tuple(map(given_back, made.points)),
+        notes=(*idle_notes(program, setup, options, wishes), *course.notes, *made.notes),
+    )
     return ProgramFront.of(made, program, texts, setup)
 
 

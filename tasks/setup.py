@@ -18,6 +18,7 @@ from .options.entries import TaskOptions, choice, switch, value
 if TYPE_CHECKING:
     from ..core.backup.backup import Backup
     from ..core.cell.cell import Cell
+    from ..core.errors import Note
     from ..core.motion.emulator.controller import Controller
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
@@ -118,6 +119,17 @@ class Setup:
                 "change it"
             )
         return self.cell
+
+    def before_programs(self, *, no_floor: bool = False) -> tuple[Cell, tuple[Note, ...]]:
+        """What stands around where no program tells which parts are taken: all lie where they are
+        at first. And what there is to say of that.
+
+        Raises:
+            InputError: the floor is lifted of a cell.
+        """
+        from ..core.cell.lying_parts import with_parts_lying
+
+        return with_parts_lying(self.surroundings(no_floor=no_floor))
 
 
 def setup_of(options: RobotOptions, known: Robot | None = None) -> Setup:

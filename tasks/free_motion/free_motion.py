@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...core.door import given, spelt
@@ -16,6 +16,7 @@ from ..setup import CellOptions, Setup, setup_of
 from .objective import ObjectiveOptions
 
 if TYPE_CHECKING:
+    from ...core.errors import Note
     from ...core.program.tool import Tool
     from ...problems.free_motion.optimal_control import SearchStep, Surroundings
     from ..results.motions import FreeMotion
@@ -100,9 +101,9 @@ def free_motion_with(
     def report(step: SearchStep) -> None:
         options.say(f"{step.time:.4f} s: {step.what} (Ctrl-C ends with the best)")
 
-    around = _surroundings(setup, tool, no_floor=options.no_floor)
+    around, notes = _surroundings(setup, tool, no_floor=options.no_floor)
     found = optimize(task, around, effort, [vias] if vias else None, report)
-    return FreeMotion(found, consumption)
+    return FreeMotion(replace(found, notes=(*notes, *found.notes)), consumption)
 
 
 free_motion = by_keywords(free_motion_with, FreeMotionOptions)
@@ -120,12 +121,15 @@ def _tool(setup: Setup, name: str | None) -> Tool:
     return setup.cell.tool(name)
 
 
-def _surroundings(setup: Setup, tool: Tool, *, no_floor: bool) -> Surroundings | None:
-    """What to keep clear of; nothing where not even the shape of the arm is known."""
+def _surroundings(
+    setup: Setup, tool: Tool, *, no_floor: bool
+) -> tuple[Surroundings | None, tuple[Note, ...]]:
+    """What to keep clear of, nothing where not even the shape of the arm is known, and what there
+    is to say of it."""
     from ...core.collision.scene.scene import CollisionScene
     from ...problems.free_motion.optimal_control import Surroundings
 
-    cell = setup.surroundings(no_floor=no_floor)
+    cell, notes = setup.before_programs(no_floor=no_floor)
     if setup.cell is None and not setup.robot.shapes:
-        return None
-    return Surroundings(CollisionScene(cell, tool), cell.clearance)
+        return None, ()
+    return Surroundings(CollisionScene(cell, tool), cell.clearance), notes

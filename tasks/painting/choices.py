@@ -12,6 +12,7 @@ from .values import box, speed_range
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
+    from ...core.errors import Note
     from ...core.program.tool import Tool, WorkObject
     from ...core.spatial.pose import Pose
     from ...problems.paint.executable.station import Station
@@ -101,8 +102,10 @@ def region_of(part: Part, plan: SweepPlan, options: SweepOptions) -> Part:
     return part.with_painted(chosen)
 
 
-def station_of(options: PaintOptions, drive: DriveOptions) -> Station | None:
-    """Robot, gun and place; None without a robot.
+def station_of(
+    options: PaintOptions, drive: DriveOptions
+) -> tuple[Station | None, tuple[Note, ...]]:
+    """Robot, gun and place, None without a robot, and what there is to say of the cell.
 
     Args:
         options: what is asked.
@@ -112,17 +115,17 @@ def station_of(options: PaintOptions, drive: DriveOptions) -> Station | None:
         InputError: naming the option.
     """
     if options.robot is None and options.cell is None:
-        return None
+        return None, ()
     from ...problems.paint.executable.station import Station
     from ...problems.paint.spray.signals import output_words
 
     setup = setup_of(options)
-    where = setup.surroundings(no_floor=options.no_floor)
+    where, notes = setup.before_programs(no_floor=options.no_floor)
     gun = _gun(where, options.tool)
     made = Station(setup.vendor, where, gun, _part_frame(where, options.frame, options.place))
     if drive.signals is not None:
         output_words(drive.signals, made.vendor)
-    return made
+    return made, notes
 
 
 def _gun(cell: Cell, name: str | None) -> Tool:

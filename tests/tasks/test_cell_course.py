@@ -8,13 +8,16 @@ from pathlib import Path
 import pytest
 
 import flyby
+from flyby.core.cell.lying_parts import with_parts_lying
 from flyby.core.errors import InputError
 from flyby.core.lint.check import CLEARANCE, COLLISION, NEAREST, PART
 from flyby.core.lint.finding import Finding
 from flyby.core.program.move import Move
 from flyby.core.program.zone import Fine
+from flyby.problems.improve.nonsmooth_sqp import SearchEffort
+from flyby.problems.improve.waypoints import Effort
 from flyby.tasks.results.cell_course import CellCourse
-from flyby.tasks.setup import setup_of_program
+from flyby.tasks.setup import controller_of, setup_of_program
 
 ROOT = Path(__file__).parents[2]
 PICK = ROOT / "examples" / "pick.script"
@@ -111,9 +114,74 @@ def test_a_program_without_a_cell_has_no_clearance() -> None:
     assert run.clearances == ()
 
 
-def test_what_plans_motions_refuses_cells_with_parts(cell) -> None:
-    with pytest.raises(InputError, match=r"parts that are picked and placed.*optimize"):
-        flyby.pareto(flyby.read(PICK, cell=cell()))
+def test_where_bases_are_looked_for_parts_are_refused(cell) -> None:
+    with pytest.raises(InputError, match=r"parts that are picked and placed.*pareto"):
+        flyby.place(flyby.read(PICK, cell=cell()), room="0,0")
+
+
+def test_the_front_of_a_program_that_carries_parts(
+    cell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What the bottle weighs counts, and is nothing that the programs state."""
+    monkeypatch.setattr("flyby.tasks.pareto.effort_of", lambda *_: Effort(iterations=1, proofs=0))
+    for effort in ("_REFINING", "_SETTLING"):
+        search = "flyby.problems.improve.energy.paced_search"
+        monkeypatch.setattr(f"{search}.{effort}", SearchEffort(1, 0.1))
+    short = tmp_path / "pick.script"
+    short.write_text(_SHORT, "utf-8")
+    program = flyby.read(short, cell=cell(("mass_kg = 0.6", "mass_kg = 3")))
+    front = flyby.pareto(program, points=2, change="zones")
+    controller = controller_of(program, setup_of_program(program))
+    bare = controller.energy(program, controller.run(program).timing).value
+    assert front.given.energy > 1.02 * bare
+    assert front.points and front.proven
+    assert front.points[0].duration < 0.97 * front.given.duration
+    for k, point in enumerate(front.points, 1):
+        assert point.certificate is not None and "what takes it" in point.certificate.message
+        assert all(move.load is None for move in point.program.moves)
+        assert isinstance(point.program.moves[2].zone, Fine)
+        again = tmp_path / f"again-{k}.script"
+        again.write_bytes(front.files[f"point-{k}/pick.script"])
+        assert flyby.read(again, cell=cell()).moves[3].zone == point.program.moves[3].zone
+    with pytest.raises(InputError, match="a part of the cell is taken or released there"):
+        flyby.pareto(program, free=[3])
+
+
+_SHORT = """def pick():
+  set_tcp(p[0, 0, 0.12, 0, 0, 0])
+  set_target_payload(0.8, [0, 0, 0.05])
+  movej([0, -1.6, -1.6, -1.5, 1.5708, 0], a=1.4, v=1.05)
+  movej(p[-0.45, -0.25, 0.27, 0, 3.1416, 0], a=1.4, v=1.05, r=0.01)
+  movel(p[-0.45, -0.25, 0.12, 0, 3.1416, 0], a=0.8, v=0.15)
+  set_standard_digital_out(0, True)
+  movel(p[-0.45, -0.25, 0.27, 0, 3.1416, 0], a=1.2, v=0.4, r=0.01)
+  movel(p[-0.45, 0.25, 0.35, 0, 3.1416, 0], a=1.2, v=0.5)
+end
+"""
+
+
+def test_where_no_program_takes_them_parts_lie_where_they_are(cell) -> None:
+    """A free motion keeps off the bottles that stand in its way."""
+    way = {
+        "start": "-185.0,-124.1,-95.9,-49.9,90,-5.0",
+        "goal": "-240.0,-124.1,-95.9,-49.9,90,-60.0",
+    }
+    tall = (("cylinder_mm = [30, 60]", "cylinder_mm = [30, 400]"),)
+    made = flyby.free_motion(cell=cell(*tall), tool="tcp", **way)
+    assert made.proven and any("lie where they are at first" in n.message for n in made.notes)
+    around = {o.name: o for o in with_parts_lying(flyby.cell(cell()))[0].obstacles}
+    assert around["bottle 2"].geometry.placement.position == pytest.approx((-0.55, -0.25, 0.09))
+    assert with_parts_lying(flyby.cell(cell()))[0].parts == ()
+
+
+def test_joints_are_shown_with_the_parts_of_their_move(cell) -> None:
+    """Where the bottle is carried it takes room beside the gripper."""
+    program = flyby.read(PICK, cell=cell())
+    free = [
+        flyby.cspace(program, axes="2,3", move=move, steps=41, whole=True).plane.free
+        for move in (2, 5)
+    ]
+    assert free[1] < free[0]
 
 
 def test_stops_at_parts_are_not_freed(cell) -> None:

@@ -31,8 +31,8 @@ def refuse_parts(cell: Cell) -> None:
         names = ", ".join(repr(part.name) for part in cell.parts)
         raise InputError(
             f"{where} has parts that are picked and placed ({names}): they are followed by "
-            f"{called('emulate')}, {called('check')}, {called('zones')} and {called('optimize')}, "
-            "not by what plans motions; here, take a cell file without [[part]], with what is "
+            f"{called('emulate')}, {called('check')}, {called('zones')}, {called('optimize')} and "
+            f"{called('pareto')}, not here: take a cell file without [[part]], with what is "
             "carried in the shape and mass of the tool, and what lies around as [[obstacle]]"
         )
 

@@ -15,7 +15,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from ....core.cell.cell import Cell
-from ....core.collision.proof.certificate import scenes_of
+from ....core.collision.handled_scenes import scenes_along
+from ....core.collision.proof.certificate import SceneOf
 from ....core.dialect import Dialect
 from ....core.display import counted
 from ....core.errors import InputError, Note
@@ -26,7 +27,7 @@ from ...reading_back import ReadBack
 from ..progress import Progress, Report
 from ..solve_round_verify import ProgramFeasibility
 from ..waypoints import Effort, optimize_waypoints
-from ..waypoints.changeable import select, with_freed_stops
+from ..waypoints.changeable import beside_parts, select, with_freed_stops
 from ..waypoints.options import Freedom
 from ..waypoints.options import WaypointTask as Wishes
 from ..waypoints.variables import ProgramVariables, make_variables
@@ -151,7 +152,7 @@ class _Work:
         points: list[FrontPoint] = []
         with suppress(KeyboardInterrupt):
             self._tell("proving the largest zones", 0, 1)
-            points += self._zones_alone(program)
+            points += self._zones_alone(program, search)
             for k, (goal, candidate) in enumerate(candidates):
                 finished = search.finish(goal, candidate.x)
                 if finished is None:
@@ -170,11 +171,11 @@ class _Work:
             tuple(notes),
         )
 
-    def _zones_alone(self, program: Program) -> list[FrontPoint]:
+    def _zones_alone(self, program: Program, search: PacedSearch) -> list[FrontPoint]:
         """The program with zones as large as they can be, which `zones` finds; or none."""
         if not self._shapes or self.cell is None:
             return []
-        wishes = self._wishes
+        wishes = search.task.wishes
         program = replace(program, start=wishes.start or program.start)
         base = with_freed_stops(self.controller, program, wishes, [])
         made = zones_alone(self.controller, program, base, self.cell, wishes, self.read_back)
@@ -182,11 +183,7 @@ class _Work:
             return []  # written anew it may begin with a move of its own
         # Once more, with the texts that it is known by.
         read = self.read_back(with_zones_of(program, made.program))
-        scenes = scenes_of(self.cell)
-        held = ProgramFeasibility(
-            self.controller, scenes, self._clearance, wishes.residual, program.start, None
-        )
-        run, proof = held.verified(read)
+        run, proof = search.feasibility.verified(read)
         if run is None or proof is None or not proof.proven:
             return []
         return [FrontPoint.of(self.controller, run, self.task.consumption, proof)]
@@ -241,11 +238,14 @@ class _Work:
         """Where to search, and the figures of the program that was given."""
         wishes = self._wishes
         program = replace(program, start=wishes.start or program.start)
-        scenes = None if self.cell is None else scenes_of(self.cell)
+        scenes = self._scenes(program)
         feasibility = ProgramFeasibility(self.controller, scenes, self._clearance, wishes.residual)
         run, proof = feasibility.given(program)
         given = FrontPoint.of(self.controller, run, self.task.consumption, proof)
-        base, wishes = self._routed(program, notes)
+        if scenes is not None and wishes.handling is not None:
+            wishes = beside_parts(wishes, program, run.path, scenes)
+        task = replace(self.task, wishes=wishes)
+        base, wishes = self._routed(program, wishes, notes)
         driven = self.controller.run(base)
         robot, slowest = self.controller.robot, self.task.slowest
         pacing = make_pacing(base, driven.timing, robot, self.dialect, wishes, slowest)
@@ -256,7 +256,7 @@ class _Work:
             self._variables(base, driven, wishes, notes),
             scenes,
             self._clearance,
-            self.task,
+            task,
             self.effort,
             self.read_back,
             watch,
@@ -267,6 +267,18 @@ class _Work:
                 "have no words in its language"
             )
         return search, given
+
+    def _scenes(self, program: Program) -> SceneOf | None:
+        """The cell along each move of the program; None without one."""
+        if self.cell is None:
+            return None
+        return scenes_along(
+            self.cell,
+            self.task.wishes.handling,
+            program,
+            lambda: self.controller.plan(program),
+            self._clearance + self.task.wishes.residual,
+        )
 
     @property
     def _clearance(self) -> float:
@@ -287,17 +299,18 @@ class _Work:
         """Whether points or zones may change: only where it is known what stands around."""
         return self.cell is not None and self.task.scope is not EnergyScope.SPEEDS
 
-    def _routed(self, program: Program, notes: list[Note]) -> tuple[Program, Wishes]:
+    def _routed(
+        self, program: Program, wishes: Wishes, notes: list[Note]
+    ) -> tuple[Program, Wishes]:
         """The program to begin with, the fastest one that a search from many starts finds, and
         what may still change in it."""
         if not self._shapes:
-            return program, self._wishes
+            return program, wishes
         if self.cell is not None and self.effort.starts > 1:
-            wishes = replace(self._wishes, time_weight=1.0)
-            found = optimize_waypoints(self.controller, program, self.cell, wishes, self.effort)
+            fastest = replace(wishes, time_weight=1.0)
+            found = optimize_waypoints(self.controller, program, self.cell, fastest, self.effort)
             if found.changed:
-                return replace(found.program, start=program.start), self._wishes.spent()
-        wishes = self._wishes
+                return replace(found.program, start=program.start), wishes.spent()
         return with_freed_stops(self.controller, program, wishes, notes), wishes
 
     def _variables(
