@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..cell.cell import Cell
@@ -43,10 +43,10 @@ class StationRobot:
 
     Args:
         name: in the station.
-        program: that it drives.
+        program: that it drives, as it was read.
         controller: that drives it.
         cell: where it stands, with what stands around.
-        run: the program as driven.
+        run: the program as driven, with the weight of the parts that it carries.
         begins: s after the station's start at which its program begins.
         pace: at which its own time passes where others set it.
         passing: what it drives where it passes through zones that waits stand behind; None where
@@ -64,11 +64,26 @@ class StationRobot:
     passing: Passing | None = None
     handling: Handling | None = None
 
+    def carrying(self, program: Program) -> Program:
+        """A program of the same moves with the parts that the robot carries along them."""
+        return _with_loads_of(program, self.run.program)
+
+    def bare(self, program: Program) -> Program:
+        """What `carrying` makes, without the parts."""
+        return _with_loads_of(program, self.program)
+
     def __repr__(self) -> str:
         return in_line(
             f"StationRobot {self.name}: {self.cell.robot.name} with {self.program.name}, "
             f"{self.run.duration:.3f} s"
         )
+
+
+def _with_loads_of(program: Program, other: Program) -> Program:
+    pairs = list(zip(program.moves, other.moves, strict=True))
+    if all(move.load == beside.load for move, beside in pairs):
+        return program
+    return program.with_moves(tuple(replace(m, load=beside.load) for m, beside in pairs))
 
 
 @dataclass(frozen=True, slots=True)

@@ -106,7 +106,7 @@ def changed_station(
             notes.append(Note(f"{name} stays as it is: {error}"))
             continue
         if made.changed:
-            run = member.controller.run(made.program, start_of(made.program))
+            run = member.controller.run(member.carrying(made.program), start_of(made.program))
             if not feasibility.take(name, run):
                 notes.append(Note(f"{name} stays as it is: beside the others it does not hold"))
                 continue

@@ -61,7 +61,8 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     notes: list[Note] = []
     for member in file.members:
         say(f"reading and driving {member.name}")
-        made, words, passed = _member(member, file)
+        made, words, passed, of_parts = _member(member, file)
+        notes += of_parts
         members[member.name] = made
         file, said = _with_own_zones(file, made, words)
         _check_axes(file, made)
@@ -312,7 +313,7 @@ def _passing(
     from ...core.station.world_zones import with_zones
 
     def drive(which: Collection[int]) -> Driven:
-        program = passing(member.program, words, which)
+        program = member.carrying(passing(member.program, words, which))
         run = member.controller.run(program, start_of(member.program))
         return run, with_zones(actions_of(run, words), file.zones, member.name, run)
 
@@ -335,9 +336,10 @@ def _passing(
 
 def _member(
     member: MemberFile, file: StationFile
-) -> tuple[StationRobot, SignalWords | None, tuple[int, ...]]:
-    """A robot that stops for all waits, how its language says what it does with signals, and the
-    moves whose zones it may pass through though a wait stands behind."""
+) -> tuple[StationRobot, SignalWords | None, tuple[int, ...], list[Note]]:
+    """A robot that stops for all waits, how its language says what it does with signals, the moves
+    whose zones it may pass through though a wait stands behind, and what there is to say of its
+    parts."""
     from ...core.driving.past_faults import refuse_faults
     from ...core.motion.emulator.controller import Controller
     from ...core.station.passing import stopping, waits_behind_zones
@@ -360,15 +362,16 @@ def _member(
         program = stopping(program, words)
         controller = Controller(setup.vendor, setup.robot)
         refuse_faults(controller, program, start_of(program))
-        run = controller.run(program, start_of(program))
+        course = CellCourse.of(program, setup)
+        run = controller.run(course.program, start_of(program))
     except FlybyError as error:
         raise InputError(f"{file.file}: robot.{member.name}: {error}") from error
     cell = setup.surroundings(program)
-    handling = CellCourse.of(program, setup).handling
     made = StationRobot(
-        member.name, program, controller, cell, run, member.begins, handling=handling
+        member.name, program, controller, cell, run, member.begins, handling=course.handling
     )
-    return made, words, passed
+    said = [replace(note, message=f"{member.name}: {note.message}") for note in course.notes]
+    return made, words, passed, said
 
 
 def _foot(robot: Robot) -> tuple[float, float, float]:

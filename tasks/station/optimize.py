@@ -186,6 +186,10 @@ def _slow(
     setup = setup_of_program(member.program)
     moves, speeds = kept_moves(member.program, share.keep)
     texts = ProgramTexts(setup, member.program, own=True)
+
+    def read_back(changed: Program) -> Program:
+        return member.carrying(texts.read_back(member.bare(changed)))
+
     found = Slowing(
         feasibility,
         share.name,
@@ -198,7 +202,7 @@ def _slow(
         ),
         start_of(member.program),
         reserve,
-    ).run(texts.read_back)
+    ).run(read_back)
     if found is not None and feasibility.take(share.name, found[0]):
         _put(feasibility, share.name, solutions, *found, texts.last)
 
@@ -217,7 +221,7 @@ def _put(
     given, known = feasibility.given.station.members[name], solutions.get(name)
     solutions[name] = Solution(
         given.program,
-        run.program,
+        given.bare(run.program),
         measure(given.controller, given.run) if known is None else known.before,
         measure(given.controller, run, certificate),
         certificate,

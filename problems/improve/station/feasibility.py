@@ -165,7 +165,7 @@ class StationFeasibility:
         """s that the station takes with another program of one robot, proven or not."""
         station = self.state.station
         members = dict(station.members)
-        members[name] = replace(members[name], program=run.program, run=run)
+        members[name] = replace(members[name], run=run)
         actions = {**self.state.actions, name: self._actions(station, name, run)}
         return StationClock(replace(station, members=members), actions).run().duration
 
@@ -200,7 +200,8 @@ class StationFeasibility:
         handling = own.handling
         if handling is not None:
             handling = handling_of(run.program, own.cell, handling.start)
-        members[name] = replace(own, program=run.program, run=run, handling=handling)
+        program = own.bare(run.program)
+        members[name] = replace(own, program=program, run=run, handling=handling)
         return self._state(replace(self.state.station, members=members), self.state)
 
     def _state(self, station: RobotStation, before: StationSnapshot | None) -> StationSnapshot:

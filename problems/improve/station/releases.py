@@ -103,7 +103,7 @@ class EarlierReleases:
                 continue
             program, files = made
             try:
-                run = member.controller.run(program, self.start)
+                run = member.controller.run(member.carrying(program), self.start)
             except FlybyError:
                 continue
             if self.feasibility.duration_with(self.name, run) > (

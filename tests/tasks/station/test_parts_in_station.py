@@ -91,3 +91,38 @@ release = "movel"
     # Let go for good it is none of the first robot's any more.
     allow = '[allow]\npairs = [["pick.bottle", "other.piece"]]\n'
     assert flyby.station(station(tmp_path, more=put, rest=allow)).clearances
+
+
+def test_what_is_carried_weighs_in_a_station_as_with_one_robot(tmp_path: Path) -> None:
+    """In the torques of the motion and in what is made of it, and not in the programs."""
+    file = station(tmp_path, CELL.replace("mass_kg = 0.6", "mass_kg = 9"))
+    member = flyby.station(file, no_proof=True).station.members["pick"]
+    alone = flyby.emulate(flyby.read(tmp_path / "pick.script", cell=tmp_path / "pick.toml"))
+    carried = [move.load for move in alone.parts[0].run.program.moves]
+    assert [move.load for move in member.run.program.moves] == carried
+    assert any(load is not None and load.mass == pytest.approx(9.0) for load in carried)
+    assert all(move.load is None for move in member.program.moves)
+    figures = [
+        member.controller.energy(program, member.run.timing).value
+        for program in (member.run.program, member.program)
+    ]
+    assert figures[0] > 1.1 * figures[1]
+
+    made = flyby.station_optimize(file, zones_only=True)
+    solution = made.solutions["pick"]
+    assert made.proven and solution.changed
+    assert solution.before.energy.sum() == pytest.approx(figures[0], rel=1e-9)
+    assert all(move.load is None for move in solution.program.moves)
+    after = made.after.station.members["pick"]
+    assert [move.load for move in after.run.program.moves] == carried
+    assert after.program.moves == solution.program.moves
+
+    heavy = station(tmp_path, CELL.replace("mass_kg = 0.6", "mass_kg = 20"))
+    found = flyby.station_check(heavy, no_proof=True).robots["pick"]
+    assert [finding.rule for finding in found].count("payload-exceeded") == 1
+
+
+def test_parts_that_a_program_does_not_meet_are_said(tmp_path: Path) -> None:
+    never = CELL.replace('attach = "set', 'attach = "never')
+    notes = flyby.station(station(tmp_path, never), no_proof=True).notes
+    assert [n.message.startswith("pick: ") for n in notes if "'bottle'" in n.message] == [True]
