@@ -350,7 +350,7 @@ def lazy_robots(files: Iterable[Path]) -> dict[str, Callable[[], Robot]]:
 
 
 def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
-    """What is known of how single robots are driven, each read when it is asked for.
+    """What is known of how single robots are driven, each read when it is asked for, and only once.
 
     Args:
         files: TOML files (see `flyby.core.motion.model.motion_file`); a robot is called as its
@@ -360,17 +360,22 @@ def motion_layers(files: Iterable[Path]) -> dict[str, MotionLayer]:
 
 
 def _layer(path: Path) -> MotionLayer:
+    laid: list[tuple[MotionModel, MotionModel]] = []
+
     def lay(base: MotionModel) -> MotionModel:
         from .motion.model.motion_file import load_motion_model
 
-        return load_motion_model(path, base)
+        if not laid or laid[0][0] is not base:
+            laid[:] = [(base, load_motion_model(path, base))]
+        return laid[0][1]
 
     return lay
 
 
 def lazy_motion(path: Path) -> Callable[[], MotionModel]:
-    """The motion model of a TOML file, read when it is asked for."""
+    """The motion model of a TOML file, read when it is asked for, and only once."""
 
+    @cache
     def load() -> MotionModel:
         from .motion.model.motion_file import load_motion_model
 
