@@ -124,6 +124,8 @@ class FaultCause(StrEnum):
     """Every move ends where the robot stands."""
     OPEN = "not known"
     """Nobody knows where it goes: a datum that nothing sets, a message of a sensor."""
+    ERROR = "program error"
+    """The program makes an error there, at which the controller stops it."""
     OTHER = "refused"
     """Points that make no arc, values that no robot has, zones that contradict each other."""
 

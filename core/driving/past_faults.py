@@ -6,10 +6,10 @@ from ..door import spelt
 from ..errors import FaultCause, MotionError
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
+from ..program.assumed_places import assumed_places
 from ..program.program import Program
 from ..program.question import QuestionKind
 from ..program.target import JointTarget
-from ..spatial.pose import IDENTITY
 from .driven_program import DrivenPart, DrivenProgram, Fault, refusal
 
 _OF_PLACES = (
@@ -83,6 +83,7 @@ class _Drive:
         self._period = period
         self._parts: list[DrivenPart] = []
         self._faults: list[Fault] = []
+        self._assumed = assumed_places(program)
 
     def whole(self, start: JointTarget | None) -> DrivenProgram:
         """All parts from a start."""
@@ -182,17 +183,7 @@ class _Drive:
         """That a move's tool or work object are not known, which may be why it cannot be driven."""
         if cause not in _OF_PLACES:
             return ""
-        used = self._program.moves[move]
-        # One that the program has set by now is what it is set to.
-        parts = (used.tool.name, used.tool.tcp), (used.work_object.name, used.work_object.pose)
-        names = [name.casefold() for name, pose in parts if pose == IDENTITY]
-        asked = [
-            question.key
-            for question in self._program.questions
-            if question.kind is QuestionKind.DATUM
-            and not question.answered
-            and question.key.casefold() in names
-        ]
+        asked = self._assumed.get(move)
         if not asked:
             return ""
         be = "is" if len(asked) == 1 else "are"

@@ -30,6 +30,8 @@ class _Motion:
         events: what happens on the way; it does not change the motion.
         open: why nobody knows where it goes; empty if that is known. Its target then only has a
             name, and it cannot be driven.
+        stops: whether ``open`` says that the program makes an error there, which the controller
+            stops it at: no move at all, and the last of the program.
         unsettled: why nobody knows how it is driven, though its target is known; empty if that is
             known. It cannot be driven either, but the robot stands at its target afterwards.
         origin: where in the source the numbers stand; not part of the value.
@@ -43,6 +45,7 @@ class _Motion:
     load: Load | None = None
     events: tuple[Event, ...] = field(default=(), kw_only=True)
     open: str = field(default="", kw_only=True)
+    stops: bool = field(default=False, kw_only=True)
     unsettled: str = field(default="", kw_only=True)
     origin: MoveOrigin | None = field(default=None, compare=False, kw_only=True)
 
@@ -54,8 +57,11 @@ class _Motion:
 
     @property
     def kind(self) -> str:
-        """``MoveJ``, ``MoveL`` or ``MoveC``; ``move`` where nobody knows where it goes."""
-        return "move" if self.open else type(self).__name__
+        """``MoveJ``, ``MoveL`` or ``MoveC``; ``move`` where nobody knows where it goes, ``stop``
+        where the controller stops the program."""
+        if self.open:
+            return "stop" if self.stops else "move"
+        return type(self).__name__
 
     @property
     def _way(self) -> str:

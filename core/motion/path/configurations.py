@@ -59,6 +59,9 @@ class ConfigurationFinder:
             solution.
 
     Attributes:
+        assumed: names of the tools and work objects that nobody knows, by the index of each move
+            that uses one: its configuration tells nothing of a pose that is not its own, and gives
+            way likewise.
         departures: index of each move that is driven with another configuration than programmed,
             and what there is to say.
         tolerated: the same for those whose configuration the controller takes all the same.
@@ -73,6 +76,7 @@ class ConfigurationFinder:
     def __init__(self, robot: Robot, label: Label, nearest: bool = False) -> None:
         self._robot = robot
         self._nearest = nearest
+        self.assumed: dict[int, tuple[str, ...]] = {}
         self.departures: dict[int, str] = {}
         self.tolerated: dict[int, str] = {}
         self.ambiguous: dict[int, str] = {}
@@ -278,7 +282,7 @@ class ConfigurationFinder:
         if alike and misses[best] > _MATCH:
             # Only where one posture is near what is programmed it is clear which is meant.
             admitted = [False] * len(options)
-        if not any(admitted) and self._nearest:
+        if not any(admitted) and self._gives_way(index):
             best = int(np.argmin(distance))
             self.departures[index] = f"contradicts the pose: driven to with {labels[best]}"
         elif not any(admitted):
@@ -299,6 +303,9 @@ class ConfigurationFinder:
         elif misses[best] > _MATCH and not wanted.hint:
             self.tolerated[index] = f"{wanted} is driven to with {labels[best]}"
         return np.asarray(options[best])
+
+    def _gives_way(self, index: int) -> bool:
+        return self._nearest or index in self.assumed
 
     @staticmethod
     def _alike(
@@ -337,7 +344,7 @@ class ConfigurationFinder:
             return
         if wanted.admits(label):
             self.tolerated[index] = f"{wanted} is driven to with {label}"
-        elif self._nearest:
+        elif self._gives_way(index):
             self.departures[index] = f"contradicts the path: the arm arrives with {label}"
         else:
             raise located(
@@ -373,6 +380,26 @@ class ConfigurationFinder:
                 "posture, to which no line leads: use a joint move, or move the target",
                 FaultCause.LIMIT,
             )
+
+    def departure_notes(self, moves: Sequence[Move]) -> list[Note]:
+        """Notes on configurations that gave way; one for all of moves whose pose is not known."""
+        found = []
+        guessed = [move for move in self.departures if move in self.assumed]
+        for move, said in self.departures.items():
+            target = moves[move].target
+            assert isinstance(target, PoseTarget)
+            message = f"configuration {target.configuration} {said}"
+            if guessed and move == guessed[0]:
+                names = dict.fromkeys(name for k in guessed for name in self.assumed[k])
+                be = "is" if len(names) == 1 else "are"
+                others = len(guessed) - 1
+                more = f"; so it is with {counted(others, 'other move')}" if others else ""
+                *first, last = names
+                named = f"{', '.join(first)} and {last}" if first else last
+                message += f", as {named} {be} not known{more}"
+            if move not in guessed[1:]:
+                found.append(Note(message, move))
+        return found
 
     def tolerance_notes(self) -> list[Note]:
         """Notes on configurations that are not quite those of their poses, or hold for several."""

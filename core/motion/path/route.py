@@ -14,6 +14,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
+from ...program.assumed_places import assumed_places
 from ...program.move import Move, MoveC, MoveJ
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
@@ -110,11 +111,12 @@ class RouteFinder:
         before: Move | None = None
         for i, move in enumerate(moves):
             if move.open or move.unsettled:
-                raise located(move, i, move.open or move.unsettled, FaultCause.OPEN)
+                raise _left_open(move, i)
             if i not in skipped:
                 check_near(move, i, before)
                 before = move
         notes: list[Note] = []
+        self._targets.assumed = assumed_places(program)
         self._targets.departures.clear()
         self._targets.tolerated.clear()
         self._targets.ambiguous.clear()
@@ -148,6 +150,7 @@ class RouteFinder:
         first = program.moves[0]
         if program.start is not None or isinstance(first.target, JointTarget):
             return ()
+        self._targets.assumed = assumed_places(program)
         return tuple(map(self._as_target, self._targets.starts(first, 0)))
 
     def standing_at(self, move: Move, near: JointTarget | None) -> JointTarget:
@@ -161,7 +164,7 @@ class RouteFinder:
             MotionError: it cannot stand there, or nobody knows where that is.
         """
         if move.open:
-            raise located(move, 0, move.open, FaultCause.OPEN)
+            raise _left_open(move, 0)
         finder = self._targets
         q = finder.rest() if near is None else finder.joints(near, finder.rest())
         if not isinstance(move.target, JointTarget):
@@ -317,10 +320,7 @@ class RouteFinder:
         notes += half_turns(segments, keep, legs.moves, self._follower.turned)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
         notes += arm_angle_notes(self._robot, program, legs.led, self._targets.uneven)
-        for move, said in self._targets.departures.items():
-            target = program.moves[move].target
-            assert isinstance(target, PoseTarget)
-            notes.append(Note(f"configuration {target.configuration} {said}", move))
+        notes += self._targets.departure_notes(program.moves)
         notes += self._targets.tolerance_notes()
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
@@ -338,6 +338,11 @@ class RouteFinder:
             self._targets.prescribed,
             tuple(replace(n, span=n.span or _span(program, n.move)) for n in notes),
         )
+
+
+def _left_open(move: Move, index: int) -> MotionError:
+    cause = FaultCause.ERROR if move.stops else FaultCause.OPEN
+    return located(move, index, move.open or move.unsettled, cause)
 
 
 def _turns_third(move: Move) -> bool:

@@ -22,6 +22,7 @@ _HEAD = """\
 # What {name} asks that no file says. This file changes nothing as it is: what is taken for
 # granted stands in it, and what is not known is put behind a #. Take the # away and put a value in;
 # structures may be tables {{ x = 1 }}, arrays [1, 2] or texts as the program writes them.
+# What is read again and again has answers in turn in [sequences]: a list for each name.
 """
 _LONGEST = 90
 

@@ -239,12 +239,13 @@ class Transcript:
             self.emit(Wait(duration, span, device=True))
         return duration
 
-    def leaves_open(self, error: SourceError, span: Span) -> bool:
+    def leaves_open(self, error: SourceError, span: Span, stops: bool = False) -> bool:
         """A move cannot be read: it stays in the program, open, where programs go on behind such.
 
         Args:
             error: why.
             span: of the move.
+            stops: see `Move`.
 
         Returns:
             Whether the program goes on behind it; nobody knows where the robot stands then.
@@ -256,10 +257,10 @@ class Transcript:
         message = str(error).removeprefix(f"{error.span}: ")
         if error.span is not None and error.span.line != span.line:
             message = f"line {error.span.line}: {message}"
-        target = PoseTarget(Pose(), name="not known")
+        target = PoseTarget(Pose(), name="the program ends" if stops else "not known")
         part = MovePart(span)
         self.emit_move(
-            MoveJ(target, Speed(joint_fraction=1.0), open=message),
+            MoveJ(target, Speed(joint_fraction=1.0), open=message, stops=stops),
             MoveParts(span, part, part, part),
         )
         return True

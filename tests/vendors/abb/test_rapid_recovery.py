@@ -2,7 +2,8 @@
 
 import pytest
 
-from flyby.core.errors import SourceError
+import flyby
+from flyby.core.errors import FaultCause, SourceError
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.abb.run.reader import read
@@ -124,3 +125,56 @@ def test_how_the_program_runs_can_be_answered():
 def test_the_name_of_an_argument():
     routines = 'PROC f(INOUT num x)\nIF ArgName(x)="k" at 1;\nENDPROC'
     assert heights("f k;", ERRORS, routines) == [1]
+
+
+FAULTY = """MODULE rows
+  CONST robtarget pFirst:=[[500,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
+  VAR num heights{2,2}:=[[600,550],[600,520]];
+  PROC main()
+    MoveJ pFirst,v500,fine,tool0;
+    FOR row FROM 1 TO 3 DO
+      MoveL Offs(pFirst,20*row,0,heights{row,2}-600),v200,fine,tool0;
+    ENDFOR
+    MoveJ pFirst,v500,fine,tool0;
+  ENDPROC
+  PROC early()
+    VAR num deep;
+    deep:=1/(heights{1,1}-600);
+    MoveJ pFirst,v500,fine,tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def test_an_error_that_nobody_handles_ends_the_program_behind_what_was_driven() -> None:
+    run = flyby.emulate(flyby.read(FAULTY, robot="abb/irb2600-12-165"))
+    assert [move.kind for move in run.program.moves] == ["MoveJ", "MoveL", "MoveL", "stop"]
+    (fault,) = run.faults
+    assert fault.cause is FaultCause.ERROR
+    assert fault.span.line == 7
+    assert "index 3 of heights is outside 1 to 2: the controller stops the program" in fault.message
+
+
+def test_an_error_before_the_first_move_is_refused() -> None:
+    with pytest.raises(SourceError, match="divi"):
+        flyby.read(FAULTY, robot="abb/irb2600-12-165", entry="early")
+
+
+def test_programs_that_are_read_strictly_are_refused_at_their_errors() -> None:
+    with pytest.raises(SourceError, match=r"index 3 of heights is outside 1 to 2$"):
+        read(FAULTY, "rows.mod", ReadOptions())
+
+
+def test_handlers_take_errors_in_the_arguments_of_moves() -> None:
+    text = FAULTY.replace(
+        "    MoveJ pFirst,v500,fine,tool0;\n  ENDPROC\n  PROC early",
+        """\
+    MoveJ pFirst,v500,fine,tool0;
+  ERROR
+    TRYNEXT;
+  ENDPROC
+  PROC early""",
+    )
+    run = flyby.emulate(flyby.read(text, robot="abb/irb2600-12-165"))
+    assert run.faults == ()
+    assert [move.kind for move in run.program.moves] == ["MoveJ", "MoveL", "MoveL", "MoveJ"]

@@ -120,10 +120,26 @@ class Interpreter:
         before = decisive(self.evaluator, entry.body, scope) if entry.name == MAIN else ()
         with suppress(_Finished):
             for _ in range(self.course.answers.cycles if entry.name == MAIN else 1):
-                self.call(entry, arguments, scope, entry.span)
+                try:
+                    self.call(entry, arguments, scope, entry.span)
+                except ProgramError as error:
+                    self._stop_at(error)
             other = next_pass(self.evaluator, before) if self.course.answers.cycles == 1 else None
             if other is not None:
                 self.out.notes.once("pass", other[1], other[0].span)
+
+    def _stop_at(self, error: ProgramError) -> NoReturn:
+        """No handler takes an error of the program: what it has driven until there was driven.
+
+        Raises:
+            ProgramError: it has not moved the robot, or programs are read as a whole or not at all.
+        """
+        span = error.span
+        said = str(error).removeprefix(f"{span}: ")
+        stopped = SourceError(f"{said}: the controller stops the program here", span)
+        if span is None or not self.meter.moves or not self.out.leaves_open(stopped, span, True):
+            raise error
+        raise _Finished
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -382,6 +398,9 @@ class Interpreter:
     def _gone_on(self, statement: tree.Invoke, error: SourceError) -> bool:
         """Whether the program goes on behind an instruction that cannot be carried out: a move
         stays open, and of what a setting sets nobody knows the value."""
+        handled = any(frame.routine.handler is not None for frame in self._frames)
+        if isinstance(error, ProgramError) and (handled or not self.course.guessed):
+            return False
         settings = SETS.get(statement.name)
         if settings is None:
             return statement.name in MOVING and self.open_move(error, statement.span)

@@ -173,9 +173,14 @@ def _typed(answer: Answer, type_: Type, sizes: tuple[int, ...], key: str, span: 
     """
     value = _converted(answer, type_, sizes)
     wrong = array_mismatch(value, type_, sizes)
-    if wrong is not None:
-        raise AnswerError(f"the answer to '{key}': {wrong}", span)
-    return value
+    if wrong is None:
+        return value
+    hint = ""
+    if isinstance(answer, tuple) and not isinstance(answer, Fields) and answer:
+        each = [_converted(item, type_, sizes) for item in answer]
+        if all(array_mismatch(item, type_, sizes) is None for item in each):
+            hint = "; answers one after the other stand in [sequences]"
+    raise AnswerError(f"the answer to '{key}': {wrong}{hint}", span)
 
 
 def like_signals(left: Value, right: Value) -> tuple[Value, Value]:
