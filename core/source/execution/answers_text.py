@@ -62,7 +62,8 @@ def grouped(questions: Sequence[Question]) -> list[str]:
             first = group[0]
             named = first.key if len(first.key) <= _LONGEST else f"{first.key[:_LONGEST]}…"
             at = f"{first.span.file}:{first.span.line}"
-            shown = at if first.table in ("branches", "passes") else f"{named} ({at})"
+            placed = first.table in ("branches", "passes") or at.casefold().endswith(first.key)
+            shown = at if placed else f"{named} ({at})"
             more = f" and {len(group) - 1} more" if len(group) > 1 else ""
             told.append(f"{kind.value}: {shown}{more}")
     return told

@@ -74,6 +74,7 @@ class Interpreter:
         external_axes: see `Converter`.
 
     Attributes:
+        ran: ids of the routines that were called.
         left_out: the first move of which nobody knows the target, and why.
     """
 
@@ -109,6 +110,7 @@ class Interpreter:
         self.place: object = None
         self._frames: list[Frame] = []
         self._booked = 0
+        self.ran: set[int] = set()
         self.left_out: Note | None = None
         self._loops: dict[int, tree.Block] = {}  # bodies of loops that a GOTO closes, by its id
 
@@ -465,6 +467,7 @@ class Interpreter:
         for declaration in routine.declarations:
             self.data.declare(declaration, scope)
         self.meter.call(routine.text, span)
+        self.ran.add(id(routine))
         if self._frames:
             self.out.called(span)
         where, self.out.notes.where = self.out.notes.where, scope.where

@@ -44,6 +44,7 @@ from ..values.library import Library
 from .entry import choose_entry, entry_arguments, entry_points
 from .files import MODULES, PROGRAM, beside, collect, loaded
 from .interpreter import Interpreter
+from .unreached import passed_by
 
 SUFFIXES = (*MODULES, PROGRAM)
 
@@ -151,11 +152,13 @@ def _program(
         raise SourceError(f"no move can be driven: {run.left_out.message}", run.left_out.span)
     driven = run.out.move_index > 0
     nothing_driven([*damages.values()], driven)
+    spans = [part.statement for part in run.out.parts] if options.answers.goes_on else []
+    missed = passed_by(data, entry, run.ran, spans)
     torn = (note for damage in damages.values() for note in damage.notes())
     return Program(
         run.statements(),
         data.module_of(entry).text,
-        notes=(*notes, *torn, *run.notes()),
+        notes=(*notes, *torn, *run.notes(), *([] if missed is None else [missed])),
         questions=run.course.questions(),
         entries=() if driven else entry_points(data, own, entry),
         calls=tuple(run.out.calls),
