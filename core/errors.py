@@ -105,6 +105,11 @@ class LostError(LeftOpenError):
     """What a statement does depends on what a damaged line would have said."""
 
 
+class StopError(SourceError):
+    """What the running controller ends a program with: no item has an index, nothing is divided by
+    zero."""
+
+
 class ParseError(SourceError):
     """A text is not written in its language: it is wrong or cut off at a place."""
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ...display import counted
-from ...errors import LeftOpenError, Note, ParseError, SourceError, Span
+from ...errors import LeftOpenError, Note, ParseError, SourceError, Span, StopError
 from ...program.call import Call
 from ...program.move import Move, MoveJ, Opaque, Statement, Wait
 from ...program.origin import MoveOrigin
@@ -264,6 +264,19 @@ class Transcript:
             MoveParts(span, part, part, part),
         )
         return True
+
+    def stops(self, error: StopError) -> bool:
+        """The program ends with an error of the controller, behind what was driven: as a move that
+        stays open.
+
+        Returns:
+            Whether it ends so; else, as it has moved nothing or programs do not go on, it is to be
+            refused.
+        """
+        if error.span is None or not self.parts:
+            return False
+        message = f"the program stops here, as the controller has an error: {error.message}"
+        return self.leaves_open(SourceError(message, error.span), error.span)
 
     def statements(self, reads: Reads) -> tuple[Statement, ...]:
         """What was carried out, each move with the origin of its numbers.

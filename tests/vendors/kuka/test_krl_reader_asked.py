@@ -79,6 +79,44 @@ def test_components_that_routines_give_are_not_known(tmp_path: Path) -> None:
     assert target.pose.position == pytest.approx((1.0, 0.0, 0.95))
 
 
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("row=lane[k+7]", "there is no lane[10]: index 10 is outside 1 to 4"),
+        ("lane[k+7]=row", "there is no lane[10]: index 10 is outside 1 to 4"),
+        ("row=12/(k-3)", "division by zero"),
+        ("x=SQRT(-1.0*k)", "SQRT: there is no finite value for these arguments"),
+    ],
+)
+def test_an_error_of_the_controller_ends_the_program_behind_what_was_driven(
+    tmp_path: Path, line: str, says: str
+) -> None:
+    head = "DECL INT row,lane[4],k\nDECL REAL x\nrow=0\nk=3\n"
+    rest = START.replace("A1 0", "A1 20")
+    program = read(head + START + rest + line + "\n" + rest, tmp_path)
+    assert [bool(move.open) for move in program.moves] == [False, False, True]
+    (fault,) = drive(Controller(VENDOR, KR30), program).faults
+    assert str(fault).startswith("m.src:8:") and fault.message.endswith(
+        f"the program stops here, as the controller has an error: {says}"
+    )
+    with pytest.raises(SourceError, match=r"m\.src:8:"):
+        VENDOR.read(f"DEF m()\n{head}{START}{rest}{line}\nEND\n", "m.src", robot=KR30)
+    with pytest.raises(SourceError, match=r"m\.src:6:"):
+        read(head + line + "\n" + rest, tmp_path)
+
+
+def test_an_index_below_one_that_others_may_have_changed_is_not_taken(tmp_path: Path) -> None:
+    body = (
+        "DECL INT nr\nDECL FRAME spot[5]\nnr=0\nCountParts(nr)\n"
+        + START
+        + "PTP spot[nr-1]\n"
+        + START
+    )
+    program = read(body, tmp_path)
+    assert [bool(move.open) for move in program.moves] == [False, True, False]
+    assert not any("-1" in note.message for note in program.notes)
+
+
 def test_a_position_of_which_a_part_is_written_is_not_known_in_the_others(tmp_path: Path) -> None:
     body = "DECL FRAME p\n" + START + 'r=EKI_GetFrame("cam","Pos",p)\np.Z=p.Z+50\nLIN p\n'
     assert "what EKI_GetFrame gave p" in read(body, tmp_path).moves[-1].open

@@ -134,7 +134,7 @@ def test_a_damaged_file_says_where(tmp_path, krl):
         ("DEF a( )\nINT i\ni=TRUE\nEND", 3, "i: a whole number is wanted, not TRUE"),
         ("DEF a( )\nINT i\ni={X 1}\nEND", 3, "i: a whole number is wanted, not a structure"),
         ("DEF a( )\nBOOL b\nb=1+TRUE\nEND", 3, r"'\+' wants numbers"),
-        ("DEF a( )\nINT n[3]\nn[4]=1\nEND", 3, "index 4 of n is outside 1 to 3"),
+        ("DEF a( )\nINT n[3]\nn[4]=1\nEND", 3, "there is no n\\[4\\]: index 4 is outside 1 to 3"),
         ("DEF a( )\nFRAME f\nf.Q=1\nEND", 3, ": FRAME has no component Q"),
         ("DEF a( )\nGOTO nowhere\nEND", 2, "no label 'nowhere'"),
         ("DEF a( )\nEXIT\nEND", 1, "EXIT stands outside a loop"),

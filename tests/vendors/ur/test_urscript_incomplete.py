@@ -7,9 +7,10 @@ import re
 import pytest
 
 import flyby
-from flyby.core.errors import LeftOpenError
+from flyby.core.errors import LeftOpenError, SourceError
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.ur.language import UrScript
 from flyby.vendors.ur.run.reader import read
@@ -47,6 +48,32 @@ def test_what_others_add_to_a_target_counts_as_nothing(text: str, height: float)
     program = script(HOME + 'cam = rpc_factory("xmlrpc", "http://10.0.0.2")\n' + text)
     assert heights(program) == [height]
     assert "depends on" in said(program) and "[values]" in said(program)
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("row = lanes[7]", "7"),
+        ("lanes[k + 3] = 0", "5"),
+        ("row = 12 / (k - 2)", "division by zero"),
+        ("x = sqrt(-k)", "sqrt"),
+    ],
+)
+def test_an_error_of_the_controller_ends_the_program_behind_what_was_driven(
+    line: str, says: str
+) -> None:
+    head = "lanes = [1, 2, 3]\nk = 2\n"
+    text = f"{line}\nmovel({POSE % 0.3})\n"
+    going = ReadOptions(answers=Answers(goes_on=True))
+    program = read(head + HOME + text, "t.script", going)
+    assert [bool(move.open) for move in program.moves] == [False, True]
+    message = program.moves[-1].open
+    assert message.startswith("the program stops here, as the controller has an error: ")
+    assert says in message
+    with pytest.raises(SourceError, match=r"t\.script:4:"):
+        read(head + HOME + text, "t.script", ReadOptions())
+    with pytest.raises(SourceError, match=r"t\.script:3:"):
+        read(head + text, "t.script", going)
 
 
 def test_a_move_to_what_nobody_knows_is_left_out() -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from ....core.errors import LeftOpenError, Note, SourceError, Span
+from ....core.errors import LeftOpenError, Note, SourceError, Span, StopError
 from ....core.program.call import Call as ProgramCall
 from ....core.program.entry_point import EntryPoint
 from ....core.program.move import Statement as ProgramStatement
@@ -203,8 +203,12 @@ class Interpreter:
         """Execute a routine to its end; parameters that are not given have no values."""
         call = Call(entry.span, entry.name, entry.text, arguments)
         scope = Scope("the entry", self._library.main)
-        with suppress(Finished):
-            self._routines.run(entry, self._library.main, call, scope)
+        try:
+            with suppress(Finished):
+                self._routines.run(entry, self._library.main, call, scope)
+        except StopError as error:
+            if not self._transcript.stops(error):
+                raise
         self._triggers.end()
         self._transcript.check_driven()
 

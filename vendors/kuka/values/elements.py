@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from ....core.errors import LeftOpenError, SourceError, Span
+from ....core.errors import LeftOpenError, SourceError, Span, StopError
 from ....core.program.question import QuestionKind
 from ....core.source.execution.course import Course
 from ....core.source.execution.suppose import is_open
@@ -301,9 +301,9 @@ class Names:
     def check_index(self, array: Array, index: tuple[int, ...], node: Name) -> None:
         for i, size in zip(index, array.sizes, strict=False):
             if i < 1 or (size is not None and i > size) or i > _LONGEST_ARRAY:
-                raise SourceError(
-                    f"{spelled(node.text, (index,))} is declared nowhere: index {i} of {node.text} "
-                    f"is outside 1 to {size or _LONGEST_ARRAY}",
+                raise StopError(
+                    f"there is no {spelled(node.text, (index,))}: index {i} is outside 1 to "
+                    f"{size or _LONGEST_ARRAY}",
                     node.span,
                 )
         if len(index) > len(array.sizes):
@@ -330,7 +330,8 @@ class Names:
         if isinstance(expression, Name) and isinstance(value, Unknown) and value.key:
             self.course.used_as(value.key, *EXPECTED["index"])
         last = supposed(value) if isinstance(value, Unknown) else None
-        if isinstance(value, Unknown) and isinstance(last, int) and self.course.answers.goes_on:
+        possible = isinstance(last, int) and last >= 1
+        if isinstance(value, Unknown) and possible and self.course.answers.goes_on:
             message = f"an index depends on {value.reason}: {last}, which it was last, is taken"
             self.course.decided(expression.span, message)
             return int(last)

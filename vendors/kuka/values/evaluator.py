@@ -169,7 +169,7 @@ class Evaluator:
             try:
                 value = apply(symbol, value, right)
             except OperandError as error:
-                raise SourceError(str(error), operation.span) from None
+                raise error.at(operation.span) from None
         return value
 
     def _used(self, symbol: str, node: tree.Expression, value: Value, other: Value) -> None:
@@ -211,7 +211,7 @@ class Evaluator:
         try:
             return negate(node.operator, operand)
         except OperandError as error:
-            raise SourceError(str(error), node.span) from None
+            raise error.at(node.span) from None
 
     def _ambiguous(self, node: tree.Ambiguous, scope: Scope, _: str | None) -> Value:
         try:
@@ -233,7 +233,7 @@ class Evaluator:
             try:
                 return computed(call.name, arguments)
             except OperandError as error:
-                raise SourceError(f"{call.text}: {error}", call.span) from None
+                raise error.at(call.span, f"{call.text}: ") from None
         return self.unknown_function(call, scope)
 
     @staticmethod

@@ -62,9 +62,9 @@ def computed(name: str, arguments: list[Value]) -> Value:
     try:
         value = function.value(*arguments)
     except (ValueError, ArithmeticError, InputError):
-        raise OperandError("there is no finite value for these arguments") from None
+        raise OperandError("there is no finite value for these arguments", stops=True) from None
     if isinstance(value, float) and not math.isfinite(value):
-        raise OperandError("there is no finite value for these arguments")
+        raise OperandError("there is no finite value for these arguments", stops=True)
     return value
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeGuard
 
-from ....core.errors import InputError
+from ....core.errors import InputError, SourceError, Span, StopError
 from .frames import frame_of, null_frame, pose_of
 from .types import AXES, POSES
 from .values import Choice, Struct, Unknown, Value, find_unknown, shown, supposed
@@ -20,7 +20,20 @@ _COMPONENTS = frozenset("xyzabc")
 
 
 class OperandError(Exception):
-    """An operator cannot be applied; the message says why."""
+    """An operator cannot be applied; the message says why.
+
+    Attributes:
+        stops: whether the operands are of the right kind, and only their values have no result:
+            what a controller finds when it comes there.
+    """
+
+    def __init__(self, message: str, stops: bool = False) -> None:
+        super().__init__(message)
+        self.stops = stops
+
+    def at(self, span: Span, of: str = "") -> SourceError:
+        """The error of a program, to be raised; ``of`` is the function that was called."""
+        return (StopError if self.stops else SourceError)(f"{of}{self}", span)
 
 
 def apply(symbol: str, left: Value, right: Value) -> Value:
@@ -185,19 +198,19 @@ def _arithmetic(symbol: str, left: Value, right: Value) -> Value:
     whole = isinstance(left, int) and isinstance(right, int)
     if symbol == "/":
         if right == 0:
-            raise OperandError("division by zero")
+            raise OperandError("division by zero", stops=True)
         value: int | float = math.trunc(left / right) if whole else left / right
     elif symbol == "*":
         value = left * right
     else:
         value = left + right if symbol == "+" else left - right
     if whole and abs(value) >= 2**31:
-        raise OperandError("the result is too large for an INT")
+        raise OperandError("the result is too large for an INT", stops=True)
     # $VEL_MA and $ACC_MA, the machine's own maxima, count as infinite; so may half of them.
     if not math.isfinite(value) and math.isfinite(left) and math.isfinite(right):
-        raise OperandError("the result is no finite number")
+        raise OperandError("the result is no finite number", stops=True)
     if math.isnan(value):
-        raise OperandError("the result is no number")
+        raise OperandError("the result is no number", stops=True)
     return value
 
 

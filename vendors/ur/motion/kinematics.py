@@ -229,7 +229,7 @@ def _checked_pose(run: KinematicsRun, value: Value, node: Expression) -> Pose:
     try:
         return pose_of(value, "the argument")
     except (ValueFault, InputError) as fault:
-        raise run.texts.error_at(fault, node) from None
+        raise run.texts.stop_at(fault, node) from None
 
 
 KINEMATICS: dict[str, Ask] = {

@@ -219,7 +219,7 @@ def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
         run.settings = made(run.settings, values)
         _ = run.settings.tool
     except (ValueFault, InputError) as error:
-        raise run.texts.error_at(f"{call.name}: {error}", call) from None
+        raise run.texts.stop_at(f"{call.name}: {error}", call) from None
     return NOTHING
 
 

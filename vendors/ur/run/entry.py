@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import PurePath
 
 from ....core.door import spelt
-from ....core.errors import EntryError, SourceError
+from ....core.errors import EntryError, SourceError, StopError
 from ....core.program.entry_point import ALL, EntryPoint, listed
 from ....core.program.program import Program
+from ....core.source.execution.transcript import Transcript
 from ....core.source.text.damage import nothing_driven
 from ..motion.settings import CALLS
 from ..syntax.traversal import all_calls, all_statements, run_in
@@ -47,7 +48,7 @@ def run_program(
     points = partial(_points, run, blocks)
     if entry == ALL and run.root.function(ALL) is None:
         return Program((), name, entries=points())
-    with suppress(Finished):
+    with suppress(Finished), _stopped(run.out):
         if entry is not None:
             define, around = _named(blocks, entry, run)
             for block in blocks:
@@ -78,6 +79,16 @@ def run_program(
         cycle=run.course.cycle,
         sections=run.course.sections.found(run.course.cycle),
     )
+
+
+@contextmanager
+def _stopped(out: Transcript) -> Iterator[None]:
+    """What runs inside may end with an error of the controller."""
+    try:
+        yield
+    except StopError as error:
+        if not out.stops(error):
+            raise
 
 
 def _run_top(run: Interpreter, blocks: Sequence[Block], stem: str) -> str:

@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from ....core.errors import Note, ParseError, SourceError, Span
+from ....core.errors import Note, ParseError, SourceError, Span, StopError
 from ....core.source.text.damage import Damage
 from ....core.source.text.files import SourceFile, SourceText
 
@@ -93,6 +93,10 @@ class Texts:
     def error_at(self, message: object, node: Node) -> SourceError:
         """An error at a node, to be raised."""
         return SourceError(str(message), self.span_of(node))
+
+    def stop_at(self, message: object, node: Node) -> StopError:
+        """What ends a running program at a node, to be raised."""
+        return StopError(str(message), self.span_of(node))
 
     def error(self, message: str, start: int, end: int | None = None) -> SourceError:
         """An error at ``start``, to be raised."""

@@ -59,7 +59,7 @@ def _with_element(
     try:
         changed = replaced(value, indices, found.value)
     except ValueFault as fault:
-        raise run.texts.error_at(fault, target) from None
+        raise run.texts.stop_at(fault, target) from None
     if len(indices) != 1 or not isinstance(value, tuple) or len(found.sources) > 1:
         run.literals.consume(found.sources)
         return Located(changed)

@@ -93,7 +93,7 @@ def condition(run: Evaluation, expression: tree.Expression, scope: Scope) -> boo
     try:
         return truth(value)
     except ValueFault as fault:
-        raise run.texts.error_at(fault, expression) from None
+        raise run.texts.stop_at(fault, expression) from None
 
 
 def plain(run: Evaluation, expression: tree.Expression, scope: Scope) -> Value:
@@ -163,7 +163,7 @@ def _locate_index(run: Evaluation, index: tree.Index, scope: Scope) -> Located:
             value = element(value, place)
             places.append(whole(place))
     except ValueFault as fault:
-        raise run.texts.error_at(fault, index) from None
+        raise run.texts.stop_at(fault, index) from None
     if len(places) != 1 or not isinstance(base.value, tuple) or not base.sources:
         run.literals.consume(base.sources)
         return Located(value)
@@ -227,14 +227,14 @@ def _listed(
     try:
         return checked(values)
     except ValueFault as fault:
-        raise run.texts.error_at(fault, node) from None
+        raise run.texts.stop_at(fault, node) from None
 
 
 def _unary(run: Evaluation, unary: tree.Unary, scope: Scope) -> Value:
     try:
         return negate(unary.operator, plain(run, unary.operand, scope))
     except ValueFault as fault:
-        raise run.texts.error_at(fault, unary) from None
+        raise run.texts.stop_at(fault, unary) from None
 
 
 def _operation(run: Evaluation, operation: tree.Operation, scope: Scope) -> Value:
@@ -249,7 +249,7 @@ def _operation(run: Evaluation, operation: tree.Operation, scope: Scope) -> Valu
         try:
             value = apply(symbol, value, right)
         except ValueFault as fault:
-            raise run.texts.error_at(fault, operation) from None
+            raise run.texts.stop_at(fault, operation) from None
         if isinstance(value, tuple):
             run.work(len(value), run.texts.span_of(operation))
     return value

@@ -71,10 +71,10 @@ def _applied(run: Evaluation, computed: Computed, values: list[Value], call: Cal
     try:
         return computed(*values)
     except (ValueFault, InputError) as fault:
-        raise run.texts.error_at(f"{call.name}: {fault}", call) from None
+        raise run.texts.stop_at(f"{call.name}: {fault}", call) from None
     except (ValueError, ArithmeticError):
         shown = ", ".join(map(describe, values))
-        raise run.texts.error_at(f"{call.name}({shown}) has no finite value", call) from None
+        raise run.texts.stop_at(f"{call.name}({shown}) has no finite value", call) from None
 
 
 def list_method(
@@ -89,7 +89,7 @@ def list_method(
     try:
         changed, value = METHODS[call.name](items, *arguments)
     except ValueFault as fault:
-        raise run.texts.error_at(f"{call.name}: {fault}", call) from None
+        raise run.texts.stop_at(f"{call.name}: {fault}", call) from None
     except TypeError:
         raise run.texts.error_at(
             f"the method '{call.name}' does not take {len(arguments)} arguments", call
