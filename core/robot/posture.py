@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..errors import InputError
 from .kinematics.arm_geometry import Family
 from .model import Robot
 
@@ -21,8 +22,7 @@ class Posture(NamedTuple):
     """Signed quantities that vanish where two solutions meet.
 
     Args:
-        shoulder: m, how far the wrist's centre is in front of axis 1; "front" is the side on
-            which it lies with all joints at zero.
+        shoulder: m, how far the wrist's centre is in front of axis 1 (see `posture`).
         elbow: m, how far the wrist's centre is in front of the line through axes 2 and 3; with
             that line upright above the base, "front" is the same side as for the shoulder.
         wrist: rad in [-π, π], axis 5.
@@ -33,9 +33,19 @@ class Posture(NamedTuple):
     wrist: float
 
 
-def posture(robot: Robot, q: ArrayLike) -> Posture | None:
+def posture(robot: Robot, q: ArrayLike, front: ArrayLike | None = None) -> Posture | None:
     """The posture of a robot at a configuration (N,); None of an arm with six motors whose last
-    three axes do not meet."""
+    three axes do not meet.
+
+    Args:
+        robot: the robot.
+        q: (N,) rad and m.
+        front: (3,), what points to the front with joint 1 at zero, in the robot's base; None for
+            the side on which the wrist's centre lies with all joints at zero.
+
+    Raises:
+        InputError: axis 2 turns the arm across ``front``.
+    """
     known = robot.recognised
     if known is None or known.family is Family.SCARA:
         return None
@@ -53,10 +63,21 @@ def posture(robot: Robot, q: ArrayLike) -> Posture | None:
         # A palletiser's axis 6 stands off the joint that keeps the flange level.
         x, _, z = -arm.centre_to_fourth
         hand = complex(x, z) * cmath.exp(-1j * (turned + arm.signs[3] * q4))
-    front = math.copysign(1.0, wrist.real)
+    ahead = math.copysign(1.0, wrist.real) if front is None else _ahead(robot, arm.frame[0], front)
     up = math.copysign(1.0, arm.frame[2, 2])
     return Posture(
-        shoulder=front * (shoulder + lower + fore + hand).real,
-        elbow=-front * up * (lower.conjugate() * fore).imag / abs(lower),
+        shoulder=ahead * (shoulder + lower + fore + hand).real,
+        elbow=-ahead * up * (lower.conjugate() * fore).imag / abs(lower),
         wrist=math.remainder(float(own[4]), math.tau),
     )
+
+
+def _ahead(robot: Robot, forward: np.ndarray, front: ArrayLike) -> float:
+    along = float(forward @ np.asarray(front, dtype=float))
+    if abs(along) < 0.5:
+        found = ", ".join(f"{value:+.2g}" for value in forward)
+        raise InputError(
+            f"{robot.name}: with joint 1 at zero axis 2 swings the arm along ({found}), not along "
+            "the front that is stated: state which of the two directions is the front"
+        )
+    return math.copysign(1.0, along)

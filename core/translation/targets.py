@@ -9,7 +9,8 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..dialect import Dialect
-from ..errors import MotionError
+from ..door import given
+from ..errors import FaultCause, MotionError
 from ..motion.path.configurations import ConfigurationFinder, located
 from ..motion.path.path import Path, Route
 from ..program.move import Move, MoveC, MoveJ
@@ -34,6 +35,10 @@ _MOST_TRIED = 12
 _LIMIT_SLACK = 1e-6
 _SAME = 1e-6
 """rad and m within which two configurations are one: rounding of inverse kinematics."""
+
+
+def _nearer() -> str:
+    return f"; {given('base', 'X,Y,Z')} (mm, in the old robot's base) has it stand nearer"
 
 
 @dataclass(frozen=True)
@@ -223,7 +228,9 @@ class Placer:
                 )
             return q, ends
         assert failure is not None
-        raise failure
+        out = failure.cause is FaultCause.REACH
+        message = failure.message + (_nearer() if out else "")
+        raise MotionError(message, failure.move, failure.span, failure.cause) from failure
 
     def _options(
         self, anchor: _Anchor, index: int, before: FloatArray, again: FloatArray | None
@@ -243,7 +250,7 @@ class Placer:
             flange = self._finder.flange(anchor.goal, target.pose, q)
             found = robot.inverse(flange, tuple(map(float, q[arm:])))
         except UnreachableError as error:
-            message = f"{robot.name} cannot reach the target: {error.message}"
+            message = f"{robot.name} cannot reach the target: {error.message}{_nearer()}"
             raise located(anchor.goal, index, message) from error
         options: list[tuple[tuple[str, ...], FloatArray]] = []
         for solution in found:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ...errors import InputError
 from ...program.speed import Speed
+from ...robot.model import Robot
 
 ZONE = "zone"
 """The size of a zone: how far before the point it begins."""
@@ -23,15 +25,40 @@ class Amount:
 
     Args:
         name: of a field of `Speed`; `ZONE`, `BEHIND` or `PASSING` for a number of a zone.
-        scale: SI units, or whole, of one of it: 0.001 of mm, 0.01 of percent.
+        scale: SI units, or whole, of one of it: 0.001 of mm, 0.01 of percent; where each arm has
+            its own (percent of its greatest speed), what it is for an arm.
     """
 
     name: str
-    scale: float
+    scale: float | Callable[[Robot], float]
+
+    def of(self, robot: Robot | None) -> Amount:
+        """The same for an arm; None where nobody knows which."""
+        if robot is None or not callable(self.scale):
+            return self
+        return Amount(self.name, self.scale(robot))
+
+    @property
+    def one(self) -> float:
+        """What one of it is, in SI units.
+
+        Raises:
+            InputError: that depends on the arm, and nobody knows which.
+        """
+        if callable(self.scale):
+            raise InputError(
+                "how much this number is depends on the arm: name the robot that drives the program"
+            )
+        return self.scale
 
 
 Units = Mapping[str, Amount]
 """What numbers are, by the unit that stands behind them; ``""`` where none does."""
+
+
+def of_arm(units: Units, robot: Robot | None) -> Units:
+    """The same for an arm."""
+    return {unit: amount.of(robot) for unit, amount in units.items()}
 
 
 def stated(speed: Speed, units: Units) -> tuple[str, float] | None:
@@ -39,7 +66,7 @@ def stated(speed: Speed, units: Units) -> tuple[str, float] | None:
     for unit, amount in units.items():
         value = getattr(speed, amount.name)
         if value is not None:
-            return unit, value / amount.scale
+            return unit, value / amount.one
     return None
 
 
@@ -50,9 +77,7 @@ def speed_of(unit: str, number: float, units: Units, acceleration: float = 1.0) 
         acceleration: `Speed.acceleration_override`.
     """
     amount = units[unit]
-    return with_number(
-        Speed(acceleration_override=acceleration), amount.name, number * amount.scale
-    )
+    return with_number(Speed(acceleration_override=acceleration), amount.name, number * amount.one)
 
 
 def with_number(speed: Speed, name: str, value: float) -> Speed:

@@ -97,7 +97,7 @@ class Statements:
         if isinstance(statement, Set):
             return Step(writes=frozenset(statement.names), made_of=self.reads(statement.values))
         if isinstance(statement, AssignAll):
-            made_of = self.reads([term for _, term in statement.terms])
+            made_of = self.reads(_terms(statement))
             return Step(writes=self._names(statement.target, self._all), made_of=made_of)
         return Step()
 
@@ -109,8 +109,13 @@ def expressions_of(statement: Statement) -> list[Expression]:
     if isinstance(statement, Set):
         return [*statement.values]
     if isinstance(statement, AssignAll):
-        return [statement.target, *(term for _, term in statement.terms)]
+        return [statement.target, *_terms(statement)]
     if isinstance(statement, If):
         inside = (e for b in statement.blocks for s in b.statements for e in expressions_of(s))
         return [statement.condition, *inside]
     return []
+
+
+def _terms(statement: AssignAll) -> list[Expression]:
+    """The expressions in the terms of a sum."""
+    return [e for _, one in statement.terms for e in ((one.point,) if one.point else one.numbers)]

@@ -82,7 +82,7 @@ class Data:
                 self.values.put(element(name, k), unknown)
             return
         try:
-            found = [(sign, *self.point(term)) for sign, term in statement.terms]
+            found = [(sign, *self._read(term, name)) for sign, term in statement.terms]
         except SourceError as error:
             for k in range(count):
                 self.values.put(element(name, k), Unknown(str(error)))
@@ -112,9 +112,18 @@ class Data:
             computed = any(isinstance(one, Operation) for one in operand.numbers)
             known = any(sources) and not computed
             return numbers, MovePart(operand.span, sources if known else ())
-        numbers, sources = self.point(operand.point)
+        numbers, sources = self._read(operand)
         point = sources[:1] if len({id(source) for source in sources}) == 1 else sources
         return numbers, MovePart(operand.span, point if any(sources) else ())
+
+    def _read(self, term: Operand, name: str = "") -> tuple[Numbers, tuple[Literal | None, ...]]:
+        """The numbers of a datum, a point, or of a position that is written out, and the literal of
+        each; ``name``: of what is given these numbers."""
+        if term.point is not None:
+            return self.point(term.point)
+        numbers = Numbers.of(map(self.values.number, term.numbers), term.kind)
+        spans = tuple(one.span if isinstance(one, Number) else None for one in term.numbers)
+        return numbers, (Literal(term.span, name, spans),) * len(numbers)
 
     def _unit(self, one: Expression) -> str:
         held = isinstance(one, Datum) and one.word in self._grammar.settings

@@ -6,7 +6,7 @@ Tools and frames that have numbers stand in registers (`FrameRegisters`).
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -20,14 +20,14 @@ from ...program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...program.zone import FINE, Zone
 from ...spatial.pose import IDENTITY, Pose
 from ..patch.uses import UseKind
-from .expressions import Datum, Expression, Number, parse_all
+from .amounts import Amount
+from .expressions import Datum, Expression, Number, Operation, parse_all
 from .forms import FormGrammar, Found
 from .motions import MotionWords
 from .moves import ArcPoints, made_move
 from .positions import PositionForm
 from .program import Said
 from .statements import (
-    Assign,
     AssignAll,
     Drive,
     Line,
@@ -35,6 +35,7 @@ from .statements import (
     Numbers,
     Operand,
     Situation,
+    Statement,
 )
 
 _SHARE = "acceleration_override"
@@ -116,18 +117,21 @@ class MotionGrammar(FormGrammar):
     The form ``motion`` has the groups ``kind`` and ``point``, and of these those that the language
     has: ``via``, the auxiliary point of an arc; ``pace``, the words of a speed, in it its ``speed``
     and ``unit``, and ``share``, one of acceleration in %; ``zone``, the words of a zone, in it its
-    ``word``, ``size`` and ``behind``. What settings set needs no group; ``flying`` says whether a
-    zone that they set counts. The form ``point`` has ``name``, ``values`` and ``kind``; the form
+    ``word``, ``size`` and ``behind``. What settings set needs no group, and counts where a motion
+    says nothing of it itself; ``flying`` has the word by which it says whether a zone that they set
+    counts, or nothing. The form ``point`` has ``name``, ``values`` and ``kind``; the form
     ``framed``, of a tool or frame that is set, ``word`` and ``place`` or ``values``.
 
     Attributes:
         form: of positions.
         words: of speeds and zones that motions state; None where settings say all.
-        kinds: ``J``, ``L`` or ``C`` by the ``kind`` of a motion; of others it is the last letter.
+        kinds: ``J``, ``L`` or ``C`` by the ``kind`` of a motion, the one that is written first; of
+            others it is the last letter.
         chained: kinds of arcs that have one point a line (`ArcPoints`).
         joints: kinds of points that are joint values.
         inline: a position at the motion itself, with the groups ``kind`` and ``values``.
         count: numbers of a position.
+        current: what stands for the numbers of where the running robot is, in capitals.
         override: word of the register that holds the speed override in %.
         tool_word, frame_word: of the tool and the frame that hold until others are set.
     """
@@ -139,6 +143,7 @@ class MotionGrammar(FormGrammar):
     joints: frozenset[str] = frozenset()
     inline: re.Pattern[str] = re.compile(r"(?!)(?P<kind>)(?P<values>)")
     count: int = 6
+    current: frozenset[str] = frozenset()
     override: str = ""
     tool_word: str = ""
     frame_word: str = ""
@@ -149,6 +154,14 @@ class MotionGrammar(FormGrammar):
         "drive",
         "set_frames",
     }
+
+    @classmethod
+    def amounts(cls) -> Iterator[Amount]:
+        """What the numbers of its speeds are."""
+        if cls.words is not None:
+            yield from (*cls.words.joint.values(), *cls.words.line.values())
+        for one in cls.settings:
+            yield from (*one.joint.values(), *one.line.values(), *one.more)
 
     def __init__(self) -> None:
         super().__init__()
@@ -192,13 +205,28 @@ class MotionGrammar(FormGrammar):
         given = found.groupdict()
         datum = Datum(line.span, (given.get("word") or self.tool_word).upper(), None)
         if given.get("place"):
-            return AssignAll(line.span, datum, ((1.0, self.datum(line, found, "place")),))
-        zero = (Number(line.span, one) for one in self.form.numbers(IDENTITY))
-        values = self._values(line, found) if given.get("values") else tuple(zero)
-        return [
-            Assign(line.span, replace(datum, element=Number(line.span, k + 1.0)), value)
-            for k, value in enumerate(values)
-        ]
+            place = self.place(line, found, "place")
+        elif given.get("values"):
+            place = self._at(line, found)
+        else:
+            zero = (Number(line.span, one) for one in self.form.numbers(IDENTITY))
+            place = Operand(line.span, tuple(zero))
+        return AssignAll(line.span, datum, ((1.0, place),))
+
+    def assigned(self, line: Line, found: Found) -> Statement:
+        """A ``target`` becomes a ``value``; all numbers of one that has several become ``values``
+        (and their ``kind``), or what a position at the motion itself would be, or those of data,
+        their sums and differences."""
+        target, value = self.datum(line, found, "target"), found.groupdict().get("value") or ""
+        if target.word not in self.vectors or target.element is not None:
+            return super().assigned(line, found)
+        if value.strip().upper() in self.current:
+            return AssignAll(line.span, target, (), "where the running robot is")
+        if found.groupdict().get("values"):
+            return AssignAll(line.span, target, ((1.0, self._at(line, found)),))
+        if self.inline.fullmatch(value.strip()):
+            return AssignAll(line.span, target, ((1.0, self.place(line, found, "value")),))
+        return AssignAll(line.span, target, tuple(_terms(self.parse(line, found, "value"))))
 
     def point(self, line: Line, found: Found) -> NumberedPoint:
         """A point's ``name`` and ``values``."""
@@ -248,7 +276,7 @@ class MotionGrammar(FormGrammar):
             goal = moved(self.placed(target, now), now)
             middle = self.placed(through, now).target if kind == "C" else None
             settings, joint = self.settings, kind == "J"
-            if self.words is None or settings.sets(UseKind.SPEED):
+            if self.words is None or not self._says(found, UseKind.SPEED):
                 pace = settings.speed(paces, joint)
             else:
                 scale = now.setting(self.override, 100.0) / 100 if self.override else 1.0
@@ -257,10 +285,10 @@ class MotionGrammar(FormGrammar):
                 pace = self.words.speed_of(kind, unit, paces, share, scale)
             if settings.flying and not found["flying"]:
                 near: Zone = FINE
-            elif self.words is None or settings.sets(UseKind.ZONE):
+            elif self.words is None or not self._says(found, UseKind.ZONE):
                 near = settings.zone_of(sizes, joint)
             else:
-                near = self.words.zone_of(given.get("word") or next(iter(self.words.zones)), sizes)
+                near = self.words.zone_of(given.get("word"), sizes)
             return made_move(
                 kind, goal.target, pace, near, goal.tool, goal.work_object, middle, events
             )
@@ -270,10 +298,12 @@ class MotionGrammar(FormGrammar):
     def place(self, line: Line, found: Found, group: str) -> Operand:
         """The position in a group, by name or by its numbers."""
         own = self.inline.fullmatch(line.source.text, *found.span(group))
-        if own is None:
-            return self.point_at(line, found, group)
-        span = line.source.span(*found.span(group))
-        return Operand(span, self._values(line, own), kind=self.kind_of(own))
+        return self.point_at(line, found, group) if own is None else self._at(line, own)
+
+    def _at(self, line: Line, found: Found) -> Operand:
+        """The position of the numbers in ``values``."""
+        span = line.source.span(*found.span())
+        return Operand(span, self._values(line, found), kind=self.kind_of(found))
 
     def _values(self, line: Line, found: Found) -> tuple[Expression, ...]:
         numbers = parse_all(line.source, *found.span("values"), self.spelling)
@@ -282,12 +312,21 @@ class MotionGrammar(FormGrammar):
         return numbers
 
     def _stated(self, line: Line, found: Found, kind: UseKind, *groups: str) -> Operand:
-        if kind is UseKind.ZONE and self.settings.flying and not found["flying"]:
-            return Operand(line.span)
-        if self.words is None or self.settings.sets(kind):
-            return self.settings.operand(line, kind)
+        if kind is UseKind.ZONE and self.settings.flying:
+            told = found["flying"] is not None
+            span = line.source.span(*found.span("flying")) if told else line.span
+            return self.settings.operand(span, kind) if found["flying"] else Operand(span)
+        if not self._says(found, kind):
+            return self.settings.operand(line.span, kind)
         whole, *numbers = (group for group in groups if group in found.re.groupindex)
-        return self.numbers_at(line, found, whole, *(numbers or [whole]))
+        alone = [] if kind is UseKind.ZONE and "word" in found.re.groupindex else [whole]
+        return self.numbers_at(line, found, whole, *(numbers or alone))
+
+    def _says(self, found: Found, kind: UseKind) -> bool:
+        """Whether a motion states its speed, or zone, itself."""
+        group = "speed" if kind is UseKind.SPEED else "zone"
+        held = self.settings.sets(kind) and not found.groupdict().get(group)
+        return self.words is not None and not held
 
     def _chained(self, said: str, point: Operand) -> tuple[str, Operand | None]:
         """How a point of an arc is driven to, and through what; at a fixed point where the robot
@@ -296,6 +335,19 @@ class MotionGrammar(FormGrammar):
             self._arc.begin()
             return "", None
         return self._arc.add(point)
+
+
+def _terms(value: Expression, sign: float = 1.0) -> Iterator[tuple[float, Operand]]:
+    """The data of a sum, each with its sign."""
+    if isinstance(value, Datum):
+        yield sign, Operand(value.span, point=value)
+    elif isinstance(value, Operation) and value.word in "+-":
+        *first, last = value.operands
+        for one in first:
+            yield from _terms(one, sign)
+        yield from _terms(last, -sign if value.word == "-" else sign)
+    else:
+        raise InputError("positions and registers of several numbers should stand here")
 
 
 def dialect_of(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import ClassVar
 
@@ -23,7 +23,6 @@ from .expressions import (
 from .program import Grammar, Said, several
 from .statements import (
     Assign,
-    AssignAll,
     Body,
     Call,
     Close,
@@ -60,8 +59,8 @@ class FormGrammar(Grammar):
         driving: what begins a motion: lines that begin so and fit no form are refused, since they
             may move the robot; other lines are kept as text.
         stopping: names of kept instructions at which the robot stops.
-        current: what stands for the numbers of where the running robot is, in capitals.
         longest: characters of a line.
+        second: how many of the units in which waits are stated a second has.
         helpers: methods that are no forms.
     """
 
@@ -69,8 +68,8 @@ class FormGrammar(Grammar):
     spelling: Spelling = USUAL
     driving: re.Pattern[str] = re.compile(r"(?!)")
     stopping: frozenset[str] = frozenset()
-    current: frozenset[str] = frozenset()
     longest: int = 1000
+    second: float = 1.0
     helpers: ClassVar[frozenset[str]] = frozenset(
         {"statement", "parse", "datum", "point_at", "numbers_at", "options", "holds"}
     )
@@ -318,19 +317,16 @@ class FormGrammar(Grammar):
         return Close(line.span, self.parse(line, found, "condition"))
 
     def wait(self, line: Line, found: Found) -> Statement:
-        """A ``time``, s, or a ``condition`` that holds."""
+        """A ``time``, or a ``condition`` that holds."""
         if found.groupdict().get("time"):
-            return Pause(line.span, self.parse(line, found, "time"))
+            time = self.parse(line, found, "time")
+            whole = Number(line.span, self.second)
+            return Pause(line.span, Operation(time.span, "/", (time, whole)))
         return Pause(line.span, condition=self.parse(line, found, "condition"))
 
     def assigned(self, line: Line, found: Found) -> Statement:
-        """A ``target`` becomes a ``value``; what is no register and no output is kept. All numbers
-        of one that has several become those of data, their sums and differences."""
+        """A ``target`` becomes a ``value``; what is no register and no output is kept."""
         target = self.datum(line, found, "target")
-        if target.word in self.vectors and target.element is None:
-            if found["value"].strip().upper() in self.current:
-                return AssignAll(line.span, target, (), "where the running robot is")
-            return AssignAll(line.span, target, tuple(_terms(self.parse(line, found, "value"))))
         if not self.holds(target.word) and target.word not in self.outputs:
             return Kept(line.span, target.word, "it does not move the robot")
         return Assign(line.span, target, self.parse(line, found, "value"))
@@ -355,19 +351,6 @@ def _case(line: Line, condition: Expression | None, begun: bool) -> Statement:
     if condition is None:
         raise InputError("a case with a value should stand first")
     return Open(line.span, condition)
-
-
-def _terms(value: Expression, sign: float = 1.0) -> Iterator[tuple[float, Datum]]:
-    """The data of a sum, each with its sign."""
-    if isinstance(value, Datum):
-        yield sign, value
-    elif isinstance(value, Operation) and value.word in "+-":
-        *first, last = value.operands
-        for one in first:
-            yield from _terms(one, sign)
-        yield from _terms(last, -sign if value.word == "-" else sign)
-    else:
-        raise InputError("positions and registers of several numbers should stand here")
 
 
 def _table(kind: type[FormGrammar]) -> list[tuple[str, re.Pattern[str], Form]]:

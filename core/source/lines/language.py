@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from ...language import Sources
 from ...program.move import Move, Opaque, Wait
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget, Target
+from ...program.zone import Fine
 from ...robot.model import Robot
 from ...spatial.pose import IDENTITY, Pose
 from ..patch.edits import Edit
@@ -31,7 +33,6 @@ from .motions import MotionWords
 from .moves import said
 from .patcher import patch_lines
 from .program import LineProgram, mostly_said, plain_lines, read_lines
-from .settings import Settings
 from .statements import Line
 
 
@@ -39,19 +40,16 @@ class LineWriter:
     """Writes one program; a new one for each.
 
     Attributes:
-        words: of motions; None where settings say all of a move's speed and zone, and `move` its
-            line.
-        settings: what is said before motions.
+        grammar: of the language that it writes; set by that.
         called: a point as motions name it, of its ``number``, and ``kind``: ``J`` of joint values,
             ``P`` of a pose.
         first: number of the first point.
-        pause: the line of a wait, of its ``time``, s.
+        pause: the line of a wait, of its ``time``.
         points: those that motions name; a language declares them by `point`.
         setup: lines that stand before all others.
     """
 
-    words: MotionWords | None = None
-    settings: Settings = Settings()
+    grammar: type[MotionGrammar]
     called: str = "P[{number}]"
     first: int = 1
     pause: str = "WAIT {time}"
@@ -72,19 +70,24 @@ class LineWriter:
 
     def move(self, move: Move) -> Iterable[str]:
         """The lines of a move, and what must be said before it."""
-        yield from self.settings.lines(move, self.said)
+        words = self.grammar.words
+        kinds = [kind for kind in UseKind if words is None or not words.says(kind)]
+        yield from self.grammar.settings.lines(move, self.said, kinds)
         yield self.motion(move)
 
     def wait(self, wait: Wait) -> str:
         """The line of a wait."""
-        return self.pause.format(time=nine_decimals(wait.duration))
+        return self.pause.format(time=nine_decimals(wait.duration * self.grammar.second))
 
     # ------------------------------------------------------------- of which moves are made
 
     def motion(self, move: Move, *beside: str) -> str:
         """The line of a motion to its points; ``beside``: what else these say."""
-        assert self.words is not None
-        return self.words.text(move, *(self.name(one, *beside) for one in said(move)[1]))
+        assert self.grammar.words is not None
+        letter, targets = said(move)
+        word = next((word for word, one in self.grammar.kinds.items() if one == letter), letter)
+        points = (self.name(one, *beside) for one in targets)
+        return self.grammar.words.text(move, *points, kind=word)
 
     def name(self, target: Target, *beside: str) -> str:
         """What a point is called, which is declared if it is new."""
@@ -171,27 +174,55 @@ class LineLanguage:
 
     def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
         """The numbers of a speed or zone, in the order in which a move has them."""
-        words, settings = self.grammar.words, self.grammar.settings
-        if words is not None and not settings.sets(kind):
+        words = self._words(kind, move)
+        if words is not None:
             return words.numbers(part, move)
-        return settings.numbers(kind, part, move)
+        return self.grammar.settings.numbers(kind, part, move)
 
-    def own(self, use: Use) -> Iterator[Edit]:
-        """What is put at a move that gets numbers, or words, of its own."""
-        words, settings = self.grammar.words, self.grammar.settings
+    def _words(self, kind: UseKind, move: Move) -> MotionWords | None:
+        """The words with which a motion says a part itself; None where settings say it."""
+        settings, at = self.grammar.settings, getattr(move.origin, kind, None)
+        if not settings.sets(kind):
+            return self.grammar.words
+        if at is None or (kind is UseKind.ZONE and settings.flying):
+            return None
+        return None if at.span == move.statement else self.grammar.words
+
+    def own(self, use: Use, later: Sequence[Move]) -> Iterator[Edit]:
+        """What is put at a move that gets numbers, or words, of its own; ``later``: the moves
+        behind it."""
         target = isinstance(use.new, JointTarget | PoseTarget)
-        if words is not None and (target or not settings.sets(use.kind)):
+        words = self.grammar.words if target else self._words(use.kind, use.move)
+        if words is not None:
             yield from words.own(use)
             return
-        if target or not settings.sets(use.kind):
+        if target or not self.grammar.settings.sets(use.kind):
             raise InputError("there is no number of its own to change: write the program anew")
-        yield from settings.own(use)
+        yield from self.grammar.settings.own(use, later)
+
+    def reworded(self, use: Use) -> bool:
+        """Whether a word at the motion, and no number, says what is to change."""
+        stops = {isinstance(part, Fine) for part in (use.old, use.new)}
+        return use.kind is UseKind.ZONE and bool(self.grammar.settings.flying) and len(stops) == 2
 
     def rewritten(self, use: Use, text: Callable[[Span], str]) -> Mapping[Span, str]:
         """What literals must say that are no single number."""
-        if isinstance(use.new, JointTarget | PoseTarget):
-            return {}
-        return self.grammar.settings.rewritten(use, text)
+        held = self.grammar.settings.sets(use.kind) and self._words(use.kind, use.move) is None
+        return self.grammar.settings.rewritten(use, text) if held else {}
+
+    @property
+    def depends(self) -> bool:
+        """Whether what numbers mean depends on the arm."""
+        return any(callable(amount.scale) for amount in self.grammar.amounts())
+
+    def of_arm(self, robot: Robot | None) -> LineLanguage:
+        """The same for an arm; None where nobody knows which."""
+        if robot is None or not self.depends:
+            return self
+        made, words, settings = copy(self), self.grammar.words, self.grammar.settings
+        parts = {"words": words and words.of(robot), "settings": settings.of(robot)}
+        made.grammar = type(self.grammar.__name__, (self.grammar,), parts)
+        return made
 
     # --------------------------------------------------------------------- its parts
 
@@ -211,13 +242,15 @@ class LineLanguage:
 
     def patch(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Files:
         """See `core.language.Patcher`."""
-        return patch_lines(program, PatcherOptions.of(options, f"{self.name} patcher"), self)
+        chosen = PatcherOptions.of(options, f"{self.name} patcher")
+        return patch_lines(program, chosen, self.of_arm(robot))
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `core.language.Writer`; the option is ``opaque``."""
         name = self.named(program.name)
         chosen = WriterOptions.of(options, f"{self.name} writer")
-        return {f"{name}{self.suffix}": self.written(program, name, chosen)}
+        text = self.of_arm(robot).written(program, name, chosen)
+        return {f"{name}{self.suffix}": text}
 
     def written(
         self,
@@ -232,6 +265,7 @@ class LineLanguage:
             writer: that writes it; None for the language's own.
         """
         writer = writer or self.writer()
+        writer.grammar = self.grammar
 
         def move(move: Move, *_: object) -> Iterable[str]:
             if options.opaque is OpaqueStyle.COMMENT:
@@ -269,7 +303,8 @@ class LineLanguage:
         return self.settings_of(kind, part, move)
 
     def _read(self, files: Files, main: str, options: ReadOptions) -> Program:
-        first, *others = (self.program(source.text, file) for file, source in files.items())
+        own = self.of_arm(options.robot)
+        first, *others = (own.program(source.text, file) for file, source in files.items())
         for other in others:
             first = first.with_file(other)
-        return run_lines(first, self.grammar(), options)
+        return run_lines(first, own.grammar(), options)

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...errors import InputError
 from ...program.move import Move, MoveJ
 from ...program.speed import Speed
 from ...program.target import JointTarget, PoseTarget
 from ...program.zone import FINE, VendorZone, Zone, ZoneKind
+from ...robot.model import Robot
 from ..patch.edits import Edit
-from ..patch.uses import MovePart, Use
+from ..patch.uses import MovePart, Use, UseKind
 from ..text.numerals import nine_decimals
-from .amounts import Units, speed_of, stated
+from .amounts import Units, of_arm, speed_of, stated
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,9 @@ class MotionWords:
         unstated: what stands for a speed of which a move states nothing.
         speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
         share: how a share of acceleration is written, of its ``number`` in %.
-        motion: a whole motion: of its ``kind`` (J, L, C), ``points``, ``speed``, ``zone`` and
-            ``share``.
+        via: how an arc's auxiliary point stands in it, of its ``point``.
+        motion: a whole motion: of its ``kind`` (J, L, C), ``via``, ``point``, ``speed``, ``zone``
+            and ``share``.
     """
 
     joint: Units
@@ -41,7 +43,16 @@ class MotionWords:
     speed: str = "{number}{unit}"
     zone: str = "{word}{numbers}"
     share: str = ""
-    motion: str = "MOVE{kind} {points} {speed} {zone} {share}"
+    via: str = "{point} "
+    motion: str = "MOVE{kind} {via}{point} {speed} {zone} {share}"
+
+    def of(self, robot: Robot | None) -> MotionWords:
+        """The same for an arm."""
+        return replace(self, joint=of_arm(self.joint, robot), line=of_arm(self.line, robot))
+
+    def says(self, kind: UseKind) -> bool:
+        """Whether motions are written with a speed, or zone, of their own."""
+        return f"{{{kind}}}" in self.motion
 
     # ----------------------------------------------------------------------- reading
 
@@ -75,15 +86,23 @@ class MotionWords:
         number = numbers[0] / override if longer else numbers[0] * override
         return speed_of(unit, number, units, acceleration)
 
-    def zone_of(self, word: str, numbers: Sequence[float]) -> Zone:
+    def zone_of(self, word: str | None, numbers: Sequence[float]) -> Zone:
         """The zone of its word and numbers.
+
+        Args:
+            word: None for none: numbers are of the first kind then.
+            numbers: none of a stop, and of a kind with one size.
 
         Raises:
             InputError: there is none of this size.
         """
-        if not numbers or numbers[0] == 0:
+        if not (word or numbers) or (numbers and numbers[0] == 0):
             return FINE
-        kind = self.zones[word.upper()]
+        kind = self.zones[word.upper() if word else next(iter(self.zones))]
+        if not numbers:
+            if len(kind.sizes) != 1:
+                raise InputError(f"a number should stand behind {word}")
+            return VendorZone(kind, *kind.sizes)
         if kind.sizes:
             level = int(numbers[0])
             if not 1 <= level <= len(kind.sizes):
@@ -111,16 +130,20 @@ class MotionWords:
             if part.size not in part.kind.sizes:
                 told = f"{part.kind.word} has {len(part.kind.sizes)} sizes"
                 raise InputError(f"{told}, and {1000 * part.size:g} mm is none of them")
-            return (1.0 + part.kind.sizes.index(part.size),)
+            several = len(part.kind.sizes) > 1
+            return (1.0 + part.kind.sizes.index(part.size),) if several else ()
         size = part.size / part.kind.unit
         return (size,) if part.ratio == 1.0 else (size, size * part.ratio)
 
-    def text(self, move: Move, *points: str) -> str:
-        """A motion to its points, as they are called."""
+    def text(self, move: Move, *points: str, kind: str = "") -> str:
+        """A motion to its points, as they are called; ``kind``: the word of a move of this kind,
+        where that is not J, L or C."""
+        *via, point = points
         share = move.speed.acceleration_override
         said = self.motion.format(
-            kind=type(move).__name__[-1],
-            points=" ".join(points),
+            kind=kind or type(move).__name__[-1],
+            via="".join(self.via.format(point=one) for one in via),
+            point=point,
             speed=self.speed_text(move),
             zone=self.zone_text(move),
             share="" if share == 1.0 else self.share.format(number=nine_decimals(100 * share)),
@@ -136,14 +159,14 @@ class MotionWords:
 
     def zone_text(self, move: Move) -> str:
         """The words of a move's zone."""
-        numbers = self.numbers(move.zone, move)
-        if not numbers:
-            assert self.stop is not None
+        if self.stop is not None and not isinstance(move.zone, VendorZone):
             return self.stop
+        numbers = self.numbers(move.zone, move)
         kinds = {kind: word for word, kind in self.zones.items()}
         first = next(iter(self.zones))
         word = kinds[move.zone.kind] if isinstance(move.zone, VendorZone) else first
-        return self.zone.format(word=word, numbers=",".join(map(nine_decimals, numbers)))
+        said = self.zone.format(word=word, numbers=",".join(map(nine_decimals, numbers)))
+        return said.strip()
 
     def own(self, use: Use) -> Iterator[Edit]:
         """Other words at the move itself.

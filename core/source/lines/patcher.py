@@ -34,9 +34,13 @@ class Patching(Protocol):
         anything."""
         ...
 
-    def own(self, use: Use) -> Iterable[Edit]:
+    def own(self, use: Use, later: Sequence[Move]) -> Iterable[Edit]:
         """What gives a part of a move numbers, or words, of its own; what it puts in right behind
-        the move stands behind its line, and the comment there."""
+        the move stands behind its line, and the comment there. ``later``: the moves behind it."""
+        ...
+
+    def reworded(self, use: Use) -> bool:
+        """Whether a word at the motion, and no number, says the part."""
         ...
 
     def rewritten(self, use: Use, text: Text) -> Mapping[Span, str]:
@@ -79,8 +83,11 @@ def patch_lines(program: Program, options: PatcherOptions, language: Patching) -
         return replace(edit, span=Span(at.file, at.line, at.column, end, end))
 
     def edits(plan: PatchPlan) -> list[Edit]:
-        made = ((use, edit) for use in plan.changes for edit in _edits(plan, use, language))
-        return [behind(edit, use) for use, edit in made]
+        return [
+            behind(edit, use)
+            for use in plan.changes
+            for edit in _edits(plan, use, language, program.moves[use.index + 1 :])
+        ]
 
     return patch_program(program, options, _Literals(text_at, language), edits)
 
@@ -97,7 +104,8 @@ class _Literals:
         spans = use.origin.numbers
         old = self._language.numbers(use.kind, use.old, use.move)
         new = self._language.numbers(use.kind, use.new, use.move)
-        if len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
+        words = (not spans and use.changes) or self._language.reworded(use)
+        if words or len(spans) != len(new) or len(old) != len(new) or not _same_words(use):
             return Wish({s: self.text(s) for s in spans if s is not None}, complete=False)
         texts = dict(self._language.rewritten(use, self.text))
         missing = False
@@ -143,7 +151,7 @@ def _stated(speed: Speed) -> list[bool]:
     return [getattr(speed, field.name) is not None for field in fields(speed)]
 
 
-def _edits(plan: PatchPlan, use: Use, language: Patching) -> list[Edit]:
+def _edits(plan: PatchPlan, use: Use, language: Patching, later: Sequence[Move]) -> list[Edit]:
     try:
         against = plan.against(use)
         if plan.changeable(use) and plan.wish(use).complete and not against:
@@ -151,13 +159,13 @@ def _edits(plan: PatchPlan, use: Use, language: Patching) -> list[Edit]:
         at_move = use.origin.ownership is not Ownership.DERIVED and not any(
             use.origin.datum_of(k) for k in range(len(use.origin.numbers))
         )
-        if at_move and not against:
+        if language.reworded(use) or (at_move and not against):
             pass  # other words at the move itself: a stop becomes a zone
         elif use.origin.numbers:
             plan.check_shared(use, against)
         else:
             plan.check_computed()
         plan.check_executions(use)
-        return list(language.own(use))
+        return list(language.own(use, later))
     except InputError as error:
         raise use.error(str(error)) from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -63,16 +64,48 @@ class PostureLetters:
         elbow: of the usual elbow, and of the other.
         shoulder: of a wrist in front of axis 1, and of one behind it.
         turning: indices of the joints whose turns count.
+        front: what points to the front with joint 1 at zero, in the robot's base; wherever the
+            arm's own zero lies, the letters of the shoulder and the elbow are counted from there.
     """
 
     wrist: str
     elbow: str
     shoulder: str
     turning: tuple[int, ...] = ()
+    front: tuple[float, float, float] = (1.0, 0.0, 0.0)
+
+    def read(self, text: str) -> PostureLabel:
+        """The label that a text states, ``N U T, 0, 0, 0``; turns that are left out are 0, and
+        letters that are none of these are passed over.
+
+        Raises:
+            InputError: a letter is missing.
+        """
+        words = self.wrist, self.elbow, self.shoulder
+        letters, _, turns = text.upper().partition(",")
+        found = [next((one for one in letters.split() if one in word), "") for word in words]
+        if not all(found):
+            raise InputError(f"a configuration has a letter each of {', '.join(words)}")
+        numbers = [*map(int, re.findall(r"-?\d+", turns)), *[0] * len(self.turning)]
+        return PostureLabel("".join(found), tuple(numbers[: len(self.turning)]))
+
+    def written(self, label: Configuration | None) -> str:
+        """The same, the other way; ``""`` for no label.
+
+        Raises:
+            InputError: it is another make's.
+        """
+        if label is not None and not isinstance(label, PostureLabel):
+            raise InputError(f"{label} has no letters: label the target's solution for this robot")
+        return "" if label is None else str(label)
 
     def label(self, robot: Robot, q: NDArray[np.float64]) -> PostureLabel | None:
-        """The label of joint values (N,) rad; None for an arm that has no such postures."""
-        at = posture(robot, q)
+        """The label of joint values (N,) rad; None for an arm that has no such postures.
+
+        Raises:
+            InputError: axis 2 turns the arm across the `front`.
+        """
+        at = posture(robot, q, self.front)
         if at is None:
             return None
         sizes = at.wrist, at.elbow, at.shoulder

@@ -8,7 +8,7 @@ from that.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -18,11 +18,12 @@ from ...errors import InputError, Span
 from ...program.move import Move, MoveJ
 from ...program.speed import Speed
 from ...program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind
+from ...robot.model import Robot
 from ..patch.edits import Edit
 from ..patch.uses import MovePart, Use, UseKind
 from ..text.files import SourceText
 from ..text.numerals import nine_decimals, with_decimals_of
-from .amounts import BEHIND, PASSING, ZONE, ZONES, Amount, Units, stated, with_number
+from .amounts import BEHIND, PASSING, ZONE, ZONES, Amount, Units, of_arm, stated, with_number
 from .expressions import USUAL, Datum, Expression, Number, Spelling, parse, parse_all
 from .statements import Line, Numbers, Operand, Set
 
@@ -97,6 +98,11 @@ class Setting:
         """Whether what stands behind the word is one literal, since words may stand there, too."""
         return bool(self.more or self.words or self.opening)
 
+    def of(self, robot: Robot | None) -> Setting:
+        """The same for an arm."""
+        joint, line = of_arm(self.joint, robot), of_arm(self.line, robot)
+        return replace(self, joint=joint, line=line, more=tuple(a.of(robot) for a in self.more))
+
     def amount(self, k: int, unit: str, joint: bool) -> Amount | None:
         """What a number is, counted from 0; None if it sets nothing of such moves."""
         if k:
@@ -170,7 +176,7 @@ class Setting:
             further = [_of_zone(part, one) for one in self.more]
         else:
             found = stated(part, units)
-            values = [(getattr(part, one.name), one.scale) for one in self.more]
+            values = [(getattr(part, one.name), one.one) for one in self.more]
             further = [value / scale for value, scale in values if value is not None]
         if found is None or len(further) < len(self.more):
             return None
@@ -226,10 +232,10 @@ def _of_zone(part: MovePart, amount: Amount) -> float:
     if amount.name == PASSING:
         return float(not isinstance(part, Fine))
     if isinstance(part, Radius):
-        return part.tcp / amount.scale
+        return part.tcp / amount.one
     if not isinstance(part, VendorZone):
         return 0.0
-    return part.size * (part.ratio if amount.name == BEHIND else 1.0) / amount.scale
+    return part.size * (part.ratio if amount.name == BEHIND else 1.0) / amount.one
 
 
 @dataclass(frozen=True)
@@ -239,8 +245,8 @@ class Settings:
     Args:
         settings: those of speeds in the order in which a move's numbers have them.
         zone: kind of the zones that they set.
-        flying: whether motions themselves say that there is a zone (``MOVEFLY``, ``CP``): of a stop
-            nothing is set.
+        flying: the word by which motions themselves say that there is a zone: ``FLY`` of
+            ``MOVEFLY``; ``""`` where they do not. Of a stop nothing is set.
 
     Raises:
         InputError: spheres have one distance.
@@ -248,7 +254,7 @@ class Settings:
 
     settings: tuple[Setting, ...] = ()
     zone: type[Radius] | ZoneKind = Radius
-    flying: bool = False
+    flying: str = ""
     _words: frozenset[str] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -257,6 +263,10 @@ class Settings:
         two = any(BEHIND in one.sets for one in self.settings)
         if two and not isinstance(self.zone, ZoneKind):
             raise InputError("a Radius has one distance: zones of two are of a ZoneKind")
+
+    def of(self, robot: Robot | None) -> Settings:
+        """The same for an arm."""
+        return replace(self, settings=tuple(one.of(robot) for one in self.settings))
 
     def __iter__(self) -> Iterator[Setting]:
         return iter(self.settings)
@@ -287,12 +297,13 @@ class Settings:
         """What a line sets; None if it sets nothing of this."""
         return next(filter(None, (one.read(line, spelling) for one in self.settings)), None)
 
-    def operand(self, line: Line, kind: UseKind) -> Operand:
-        """The speed or zone of a move that states none itself."""
+    def operand(self, span: Span, kind: UseKind) -> Operand:
+        """The speed or zone of a move that states none itself; ``span``: of the move, or of the
+        word in it that says that there is a zone."""
         return Operand(
-            line.span,
+            span,
             tuple(
-                Datum(line.span, one.word, None, Number(line.span, k + 1.0) if k else None)
+                Datum(span, one.word, None, Number(span, k + 1.0) if k else None)
                 for one in self._of(kind)
                 for k in range(one.count)
             ),
@@ -333,7 +344,7 @@ class Settings:
             amount = one.amount(k, unit, joint)
             if amount is None:
                 continue
-            value = number * amount.scale
+            value = number * amount.one
             if made.setdefault(amount.name, value) != value:
                 raise InputError(
                     f"{one.word} {number:g}{unit} differs from another setting of "
@@ -343,10 +354,18 @@ class Settings:
 
     # ---------------------------------------------------------- writing and patching
 
-    def lines(self, move: Move, said: dict[str, str]) -> Iterator[str]:
-        """What is said before a move; ``said``: the lines that hold, by word, kept here."""
+    def lines(
+        self, move: Move, said: dict[str, str], kinds: Container[UseKind] = tuple(UseKind)
+    ) -> Iterator[str]:
+        """What is said before a move.
+
+        Args:
+            move: the move.
+            said: the lines that hold, by word, kept here.
+            kinds: what is not said by the motion itself.
+        """
         for kind, part in ((UseKind.SPEED, move.speed), (UseKind.ZONE, move.zone)):
-            for one in self._counting(kind, part):
+            for one in self._counting(kind, part) if kind in kinds else ():
                 line = one.said(move, part)
                 if line is not None and said.get(one.word) != line:
                     said[one.word] = line
@@ -378,22 +397,43 @@ class Settings:
                 made[place] = one.changed(said, new[0], old[1], wanted)
         return made
 
-    def own(self, use: Use) -> Iterator[Edit]:
+    def own(self, use: Use, later: Sequence[Move]) -> Iterator[Edit]:
         """Settings of its own for a move: before it, and where they go on holding, those that held
-        before behind it."""
-        start = use.statement
+        before behind it; and its word for a zone, where it has one.
+
+        Args:
+            use: what the move is to have.
+            later: the moves behind it.
+
+        Raises:
+            InputError: the motion has no place for that word.
+        """
+        old, start = use.old, use.statement
+        if self.flying and isinstance(use.old, Fine) != isinstance(use.new, Fine):
+            if use.origin.span == use.statement:
+                raise InputError(
+                    "the motion says nothing of it, and nothing is put in: write it anew"
+                )
+            passing = not isinstance(use.new, Fine)
+            yield Edit(use.origin.span, self.flying if passing else "", use.index)
+            # What a stop was driven under nobody reads: what the next zone reads is put back.
+            zones = (move.zone for move in later if not isinstance(move.zone, Fine))
+            old = next(zones, use.old)
+            if not passing:
+                return
         before = Span(start.file, start.line, start.column, start.start, start.start)
         behind = Span(start.file, start.line, start.column, start.end, start.end)
         gap = f"\n{' ' * (start.column - 1)}"
         put_in, put_back = "", ""
-        was = self._counting(use.kind, use.old)
+        was = self._counting(use.kind, old)
         for one in self._counting(use.kind, use.new):
-            held, new = (one.said(use.move, part) for part in (use.old, use.new))
+            held, new = (one.said(use.move, part) for part in (old, use.new))
             if new and held != new:
                 put_in += f"{new}{gap}"
                 held = held if one.always is None and one in was else None
                 put_back += f"{gap}{held}" if held else ""
-        yield Edit(before, put_in, use.index)
+        if put_in:
+            yield Edit(before, put_in, use.index)
         if put_back:
             yield Edit(behind, put_back, use.index)
 

@@ -175,17 +175,18 @@ class Set:
 
 @dataclass(frozen=True, slots=True)
 class AssignAll:
-    """``PR[1] = P[2] + PR[3]``: all numbers of a datum that has several.
+    """``PR[1] = P[2] + PR[3]``, ``TOOL 1 = (0, 0, 100, 0, 0, 0)``: all numbers of a datum that has
+    several.
 
     Args:
-        terms: a sign and a datum or point each; none if nobody knows what it becomes (the position
-            of the running robot).
+        terms: a sign, and a datum, a point or numbers each; none if nobody knows what it becomes
+            (the position of the running robot).
         reason: what it depends on then.
     """
 
     span: Span
     target: Datum
-    terms: tuple[tuple[float, Datum], ...]
+    terms: tuple[tuple[float, Operand], ...]
     reason: str = ""
 
 

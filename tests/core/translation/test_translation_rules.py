@@ -336,6 +336,7 @@ def test_what_is_out_of_reach_is_an_error_with_move_and_line(between) -> None:
         pair.translate(Program((pair.joint(), far)))
     assert caught.value.move == 1
     assert "job.src:12:3: move 2: ur/ur10e cannot reach" in str(caught.value)
+    assert "; base=X,Y,Z (mm, in the old robot's base) has it stand nearer" in str(caught.value)
 
 
 def test_a_line_that_the_new_robot_cannot_follow_is_named(between) -> None:

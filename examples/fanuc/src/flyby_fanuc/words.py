@@ -29,7 +29,7 @@ MOTION = MotionWords(
     zones={"CNT": CNT, "CR": CR},
     unstated="max_speed",
     share="ACC{number}",
-    motion="{kind} {points} {speed} {zone} {share}",
+    motion="{kind} {via}{point} {speed} {zone} {share}",
 )
 XYZ = PositionForm(Orientation.EULER_ZYX, last_first=True)
 FRAMES = FrameRegisters(

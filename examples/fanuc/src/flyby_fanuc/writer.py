@@ -13,7 +13,7 @@ from flyby.core.source.lines.postures import PostureLabel
 from flyby.core.source.text.numerals import nine_decimals
 from flyby.core.spatial.pose import Pose
 
-from .words import MOTION, XYZ
+from .words import XYZ
 
 _HEAD = """\
 /PROG  {name}
@@ -47,7 +47,6 @@ class Writer(LineWriter):
         before, after: lines of their own.
     """
 
-    words = MOTION
     pause = "  WAIT {time}(sec)"
 
     def __init__(self, before: tuple[str, ...] = (), after: tuple[str, ...] = ()) -> None:

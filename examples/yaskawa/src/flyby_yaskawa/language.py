@@ -37,7 +37,7 @@ MOTION = MotionWords(
     speed="{unit}={number}",
     zone="{word}={numbers}",
     share="ACC={number} DEC={number}",
-    motion="MOV{kind} {points} {speed} {zone} {share}",
+    motion="MOV{kind} {via}{point} {speed} {zone} {share}",
 )
 XYZ = PositionForm(Orientation.EULER_ZYX, last_first=True)
 FRAMES = FrameRegisters(XYZ, "TOOL")
@@ -148,7 +148,6 @@ SPEAKS = dialect_of(
 class Writer(LineWriter):
     """Writes one job; without a PL the robot is taken to stop."""
 
-    words = MOTION
     called = "C{number:05}"
     first = 0
     pause = "TIMER T={time}"

@@ -73,7 +73,7 @@ class Small(Grammar):
         if target.word == "V" and target.element is None:
             datum = parse(line.source, at, line.end)
             assert isinstance(datum, Datum)
-            return AssignAll(span, target, ((1.0, datum),))
+            return AssignAll(span, target, ((1.0, Operand(datum.span, point=datum)),))
         return Assign(span, target, parse(line.source, at, line.end))
 
     def _go(self, line: Line, begin: int) -> Drive:

@@ -41,9 +41,9 @@ class Grammar(MotionGrammar):
         {"NEAR": NEAR},
         zone="{word} {numbers}",
         share="A{number}",
-        motion="{kind}GO {points} {speed} {zone} {share}",
+        motion="{kind}GO {via}{point} {speed} {zone} {share}",
     )
-    kinds: ClassVar = {"R": "L"}
+    kinds: ClassVar = {"L": "L", "R": "L"}
     chained = frozenset({"A"})
     joints = frozenset({"J"})
     inline = re.compile(r"(?P<kind>AT)\s*\((?P<values>[^()]*)\)")
@@ -67,7 +67,6 @@ class Grammar(MotionGrammar):
 
 
 class Writer(LineWriter):
-    words = Grammar.words
     called = "{kind}{number}"
 
     def point(self, number: int, target: Target, *beside: str) -> str:

@@ -89,7 +89,7 @@ class Grammar(MotionGrammar):
             pace = HELD.speed(speed, joint=found["kind"] == "J")
             return made_move(found["kind"], goal, pace, HELD.zone_of(zone))
 
-        speed, zone = (HELD.operand(line, kind) for kind in (UseKind.SPEED, UseKind.ZONE))
+        speed, zone = (HELD.operand(line.span, kind) for kind in (UseKind.SPEED, UseKind.ZONE))
         return Drive(line.span, self.point_at(line, found, "point"), speed, zone, build)
 
     def point(self, line: Line, found: Found) -> Said:

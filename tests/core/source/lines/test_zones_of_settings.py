@@ -47,7 +47,7 @@ SWITCHED = (
 )
 BY_NUMBERS = Settings((SPEED, ACCEL, CNT), NEAR)
 BY_SWITCH = Settings((SPEED, *SWITCHED), NEAR)
-BY_MOTION = Settings((SPEED, *SWITCHED[1:]), NEAR, flying=True)
+BY_MOTION = Settings((SPEED, *SWITCHED[1:]), NEAR, flying="FLY")
 WORDS = MoveWords((NEAR,), frozenset({"tcp", "joint_fraction", "acceleration_override"}))
 FORM = PositionForm(Orientation.EULER_ZYZ)
 ROBOT: Any = None
@@ -61,7 +61,7 @@ def language(held: Settings) -> LineLanguage:
         spelling = Spelling(names=True)
         driving = re.compile("[JL]MOVE")
         forms: ClassVar = {
-            "motion": r"(?P<kind>[JL])MOVE(?P<flying>FLY)?\s+(?P<point>\w+)",
+            "motion": r"(?P<kind>[JL])MOVE(?P<flying>(?:FLY)?)\s+(?P<point>\w+)",
             "point": r"POINT\s+(?P<name>\w+)\s*=\s*(?P<values>.*)",
             "assigned": r"(?P<target>\w+)\s*=\s*(?P<value>[^=].*)",
         }
@@ -163,8 +163,14 @@ def test_a_motion_may_say_that_there_is_a_zone() -> None:
     assert zones(text, FLY) == [FINE, near(10, 10), near(10, 30), FINE]
     text = "LEAVE = 20\nLMOVEFLY a\n"
     assert patched(text, lambda *_: near(40, 10), FLY) == text.replace("20", "40")
-    with pytest.raises(FlybyError, match="does not give the changed program"):
-        patched(text, lambda *_: FINE, FLY)
+    assert patched(text, lambda *_: FINE, FLY) == text.replace("FLY", "")
+    stop = "LEAVE = 20\nLMOVE a\nLMOVEFLY b ' on\nLMOVEFLY a\n"
+    some = [near(20, 10), near(40, 10), near(5, 5)]
+    for zone in some:
+        made = patched(stop, lambda k, old, new=zone: old if k else new, FLY)
+        assert zones(made, FLY) == [zone, near(20, 10), near(20, 10)]
+    assert patched(stop, lambda k, old: some[0], FLY) == stop.replace("LMOVE a", "LMOVEFLY a")
+    assert zones(patched(stop, lambda k, old: some[k], FLY, shared="own"), FLY) == some
     (move,) = read("LMOVE a\n", FLY).moves
     assert list(BY_MOTION.lines(move, {})) == ["SPD 100"]
 
