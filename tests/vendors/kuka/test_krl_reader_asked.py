@@ -290,3 +290,32 @@ def test_what_is_asked_of_a_loop_that_waits_for_orders_changes_nothing(tmp_path:
     answers.write_text(answers_text(bare.questions, "m.src"), "utf-8")
     again = VENDOR.read(POLLED, "m.src", robot=KR30, answers=load_answers(answers))
     assert len(bare.moves) == len(again.moves) > 0
+
+
+def test_what_is_asked_says_its_type_as_cases_and_components_use_it(tmp_path: Path) -> None:
+    body = (
+        START
+        + "SWITCH part\nCASE #flansch\nPTP {A1 5}\nCASE #deckel\nPTP {A1 7}\nENDSWITCH\n"
+        + "SWITCH job.nr\nCASE 3,4\nPTP {A1 8}\nENDSWITCH\n"
+        + "shift=tray[2].offs\np=$NULLFRAME\np.X=p.X+shift.X\n"
+    )
+    program = read(body, tmp_path)
+    asked = {question.key: question for question in program.questions}
+    assert (asked["part"].type, asked["part"].example) == ("a constant, as #FLANSCH", "#FLANSCH")
+    assert asked["job.NR"].type == "whole number"
+    assert asked["tray[2].OFFS"].type == "position"
+    answered = read(body, tmp_path, 'part = "#deckel"\n"job.NR" = 4')
+    assert len(answered.moves) == 3
+
+
+def test_what_ethernet_calls_return_is_asked_as_a_status_that_is_well(tmp_path: Path) -> None:
+    body = (
+        "DECL EKI_STATUS ret\n" + START + 'ret=EKI_Open("cam")\nIF ret.Msg_No<>0 THEN\nHALT\n'
+        "PTP {A1 5}\nENDIF\nPTP {A1 7}\n"
+    )
+    (question,) = (q for q in read(body, tmp_path).questions if "EKI_Open" in q.key)
+    assert "EKI_STATUS" in question.type
+    assert dict(question.example) == {"MSG_NO": 0, "READ": 1, "BUFF": 0, "CONNECTED": True}
+    well = "'EKI_Open(\"cam\")' = { MSG_NO = 0 }"
+    assert len(read(body, tmp_path, well).moves) == 2
+    assert len(read(body, tmp_path, well.replace("0", "7")).moves) == 3

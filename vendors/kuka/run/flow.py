@@ -14,6 +14,7 @@ from ..syntax.traversal import calls_in
 from ..syntax.tree import (
     Block,
     Call,
+    Constant,
     Exit,
     Expression,
     For,
@@ -128,6 +129,10 @@ class Flow:
                         self._run_block(case.body, scope)
                         return
         if unknown is not None:
+            first = next((c.values[0] for c in statement.cases if c.values), None)
+            if isinstance(first, Constant | Number):
+                case = self._evaluator.evaluate(first, scope)
+                self._evaluator.used("==", statement.subject, subject, case)
             bodies = [case.body for case in statement.cases]
             may = [*possible, True]
             self._choose(statement.subject.span, unknown, bodies, statement.otherwise, scope, may)

@@ -38,14 +38,13 @@ class DatumAnswers:
 
     def used_with(self, value: Unknown, step: str | tuple[int, ...]) -> None:
         """A component of what nobody says is used: so it is a structure that is asked for."""
-        whole = value.key.endswith(")") or "." not in value.key
-        if not isinstance(step, str) or not value.key or not whole:
+        if not isinstance(step, str) or not value.key:
             return
         if step in FRAME_FIELDS:
             self.course.used_as(value.key, *EXPECTED["frame"])
         elif step.upper() in AXIS_NAMES:
             self.course.used_as(value.key, *EXPECTED["axis"])
-        else:
+        elif value.key.endswith(")") or "." not in value.key:
             self.course.used_with(value.key, step.upper())
 
     def answer(

@@ -163,8 +163,8 @@ class Evaluator:
         value, node = self._operand(operation.first, scope), operation.first
         for symbol, operand in operation.rest:
             right = self._operand(operand, scope)
-            self._used(symbol, node, value, right)
-            self._used(symbol, operand, right, value)
+            self.used(symbol, node, value, right)
+            self.used(symbol, operand, right, value)
             node = operation
             try:
                 value = apply(symbol, value, right)
@@ -172,7 +172,7 @@ class Evaluator:
                 raise error.at(operation.span) from None
         return value
 
-    def _used(self, symbol: str, node: tree.Expression, value: Value, other: Value) -> None:
+    def used(self, symbol: str, node: tree.Expression, value: Value, other: Value) -> None:
         """What an operator says of the type of a datum that nobody has set."""
         if not isinstance(node, tree.Name | tree.Call) or not isinstance(value, Unknown):
             return
