@@ -26,6 +26,9 @@ author writes down, in a TOML file, texts as controllers run them beside what th
     zone = { kind = "Radius", tcp_mm = 8 }
     events = [{ sets = "do3", to = true, distance_mm = 15 }]
 
+A text with ``recorded = { period_ms = 24, lines = ["RUN LOGGER", "…"] }`` says by which lines, in
+their order, its recording begins to log, how often, and how it ends.
+
 Keys end in their unit. Tools, frames and loads may be stated once, ``tools.gun = { … }``, and named
 in statements, ``tool = "gun"``. Numbers that are not stated are not compared, but for what counts
 when it is there: a move without ``zone`` is a stop, and has no tool, frame, load or events unless
@@ -92,6 +95,8 @@ class GoldenText:
         statements: by term, in SI units; see the module.
         robot: that drives it; None where the text is only read.
         entry: the routine that is driven; None for the usual one.
+        recorded: s between samples of its recording, and lines that this has; None if it is not
+            recorded.
     """
 
     about: str
@@ -99,6 +104,7 @@ class GoldenText:
     statements: tuple[Mapping[str, Any], ...]
     robot: str | None = None
     entry: str | None = None
+    recorded: tuple[float, tuple[str, ...]] | None = None
 
 
 @dataclass(frozen=True)
@@ -173,7 +179,17 @@ def _text(data: Mapping[str, Any], shared: Mapping[str, Any]) -> GoldenText:
                 raise InputError(
                     f"text {about!r}: a {row['kind']} has no {term!r}; it has {', '.join(known)}"
                 )
-    return GoldenText(about, dict(data["files"]), rows, data.get("robot"), data.get("entry"))
+    told = data.get("recorded")
+    recorded = None
+    if told is not None:
+        own = _in_si(told)
+        if set(own) != {"period", "lines"} or not own["lines"] or not data.get("robot"):
+            raise InputError(
+                f'text {about!r}: recorded = {{ period_ms = …, lines = ["…"] }}, and its robot'
+            )
+        recorded = own["period"], tuple(own["lines"])
+    files = dict(data["files"])
+    return GoldenText(about, files, rows, data.get("robot"), data.get("entry"), recorded)
 
 
 def _spelt_out(row: Mapping[str, Any], shared: Mapping[str, Any]) -> dict[str, Any]:

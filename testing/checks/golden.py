@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import replace
 from itertools import zip_longest
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from ...core.errors import FlybyError
+from ...core.language import Reader
 from ...core.motion.emulator.controller import Controller
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement
 from ...core.program.origin import Ownership
@@ -18,6 +20,8 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE
 from ...core.program.zone import kind_word, zone_word
+from ...core.source.lines.driving import MotionGrammar
+from ...core.source.lines.language import LineLanguage
 from ...core.source.write.options import OpaqueStyle
 from ...core.spatial.pose import IDENTITY
 from ..golden import LANGUAGE, GoldenText, differences, terms_of
@@ -119,17 +123,51 @@ class GoldenChecks(Subject):
             seen |= {*_seen(text, program), *self._words_in(program)}
             if self.comment_sign and any(self.comment_sign in one for one in text.files.values()):
                 seen.add("comment")
+            seen |= {"recording"} if text.recorded else set()
+        denied = sorted(self.golden_none & (seen | set(self._has())))
+        assert not denied, told(
+            f"{self.name}: none = {denied} denies what the golden texts, or the dialect, have",
+            look="the golden file, or the dialect: tools=False, work_objects=False, …",
+        )
         missing = sorted({*LANGUAGE, *self._words()} - seen - self.golden_none)
         offers = []
         if left := [word for word in missing if word in LANGUAGE]:
             offers.append(f'of {", ".join(left)}: put it among none = ["…"] if there is none of it')
         if said := [word for word in missing if word not in LANGUAGE]:
-            offers.append(f"of {', '.join(said)}: the dialect says that it has words for it")
+            offers.append(f"of {', '.join(said)}: the vendor, or its dialect, says that it has it")
         assert not missing, told(
             f"{self.name}: no golden text has: {', '.join(missing)}",
             lines=offers,
             look="the golden file: add a text that says it",
         )
+
+    def test_every_form_of_line_counts_in_a_golden_text(self) -> None:
+        """Each form of a language of lines, and each setting, passed over: a golden text is read
+        otherwise then."""
+        language = self.vendor.reader
+        if self.golden is None or not isinstance(language, LineLanguage):
+            pytest.skip(f"{self.name} has no golden texts, or no forms of lines")
+        told_so = [self._reads(language, text) for text in self.golden_texts]
+        unseen = []
+        for name, grammar in _without_each(language.grammar):
+            other = copy(language)
+            other.grammar = grammar
+            if [self._reads(other, text) for text in self.golden_texts] == told_so:
+                unseen.append(name)
+        assert not unseen, told(
+            f"{self.name}: no golden text is read otherwise without {', '.join(unseen)}",
+            look="the golden file: add lines of these forms, and what they mean",
+        )
+
+    def _reads(self, language: Reader, text: GoldenText) -> object:
+        """What a golden text is read as."""
+        suite = copy(self)
+        suite.__dict__["vendor"] = replace(self.vendor, reader=language)
+        try:
+            statements = suite.read_golden(text).statements
+        except (FlybyError, AssertionError) as error:
+            return type(error)
+        return [terms_of(one, self.signals) for one in statements]
 
     def test_golden_texts_are_written_and_read_again(self) -> None:
         self.need("reader", "writer")
@@ -170,6 +208,18 @@ class GoldenChecks(Subject):
         driven = set(self.driven_robots())
         return [text for text in self.golden_texts if text.robot in driven]
 
+    def _has(self) -> Iterator[str]:
+        """What of `LANGUAGE` the dialect says that there is."""
+        spoken = self.vendor.speaks
+        if spoken is None:
+            return
+        yield from ("tool" for _ in range(spoken.tools))
+        yield from ("frame" for _ in range(spoken.work_objects))
+        yield from ("load" for _ in range(spoken.loads))
+        yield from ("MoveC" for _ in spoken.arc_orientations)
+        moves = (spoken.joint, spoken.line)
+        yield from ("configuration" for words in moves if words.configurations)
+
     def _words(self) -> Iterator[str]:
         """What the dialect says that there are words for."""
         spoken = self.vendor.speaks
@@ -178,6 +228,8 @@ class GoldenChecks(Subject):
         for words in (spoken.joint, spoken.line, spoken.arc):
             yield from (f"zone {kind_word(kind)}" for kind in words.zones)
             yield from (f"speed {name}" for name in words.speeds)
+        if self.vendor.recorder is not None:
+            yield "recording"
         if spoken.outputs is not None:
             yield "event"
         if spoken.signals is not None:
@@ -192,6 +244,26 @@ class GoldenChecks(Subject):
                 yield f"zone {zone_word(statement.zone)}"
                 yield from (f"speed {name}" for name in stated_speeds(statement))
                 yield from ("event" for _ in statement.events)
+
+
+def _without_each(
+    grammar: type[MotionGrammar],
+) -> Iterator[tuple[str, type[MotionGrammar]]]:
+    """The grammar, of each of whose forms and settings in turn the lines say nothing."""
+
+    def silent(name: str) -> str:
+        return f"nothing.{name}"
+
+    for name in grammar.forms:
+        if name.partition(".")[0] not in ("nothing", "routine"):
+            forms = {silent(k) if k == name else k: v for k, v in grammar.forms.items()}
+            yield f"the form {name}", type("Grammar", (grammar,), {"forms": forms})
+    for one in grammar.settings:
+        rest = tuple(other for other in grammar.settings if other is not one)
+        held = replace(grammar.settings, settings=rest)
+        forms = {silent(one.word): one.pattern.pattern.replace("(?P<", "(?P<_"), **grammar.forms}
+        parts = {"forms": forms, "settings": held}
+        yield f"the setting {one.word}", type("Grammar", (grammar,), parts)
 
 
 def stated_speeds(move: Move) -> list[str]:

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 _EVENT = "a motion with an action on its way, and its row's events = [{ sets = …, to = …, "
+_RECORDED = (
+    "a text with recorded = { period_ms = …, lines = […] }: what begins the log, "
+    "states its period and ends it"
+)
 _SHARED = "two motions that read one datum (a point with a name or number, a speed in a register)"
 _SHEET = "[[robots]] of a robot, from its data sheet: "
 _SAYS = "a golden text that says it, in a text that the dialect then refuses: "
@@ -20,6 +24,8 @@ BITING: Mapping[str, str] = {
     "events dropped on writing": _EVENT + "time_s = … }] stated; the text names its robot",
     "events counted from the other end": _EVENT + 'anchor = "start" or "end" }] stated',
     "events without their place": _EVENT + "time_s or distance_mm = … }] that is not 0",
+    "recordings log nothing": _RECORDED,
+    "recordings log at another period": _RECORDED,
     "kept statements lost on reading": 'an output that is set, as a row kind = "Opaque"',
     "kept statements lost on writing": 'an output that is set, as a row kind = "Opaque", in a text '
     "that names its robot",

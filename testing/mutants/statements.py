@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from ...core.language import Sources, Writer
+from ...core.language import Recorder, Sources, Writer
 from ...core.program.arc_orientation import ArcOrientation
 from ...core.program.event import EventAnchor
 from ...core.program.move import Move, MoveC, MoveJ, Opaque, Wait
@@ -14,12 +14,14 @@ from ...core.program.program import Program
 from ...core.program.target import PoseTarget
 from ...core.program.tool import FLANGE, WORLD
 from ...core.program.zone import FINE, Fine, Radius
+from ...core.recording import Recording
 from ...core.robot.model import Robot
 from ...core.source.write.options import OpaqueStyle
 from ...core.vendor import Vendor
 from ..checks.subject import Subject
 from .mutant import Mutant, has, knows_signals, sets_outputs
 from .wrapping import (
+    FaultyRecorder,
     each_move,
     everywhere,
     in_reading,
@@ -30,6 +32,7 @@ from .wrapping import (
 
 GOLDEN = ("test_golden_texts_mean_what_their_author_says",)
 WORDS = ("test_every_word_of_the_dialect_is_written_and_read",)
+RECORDED = ("test_golden_recordings_log_as_their_author_says",)
 AGAIN = ("test_golden_texts_are_written_and_read_again",)
 
 
@@ -142,6 +145,32 @@ def _uncommented(vendor: Vendor) -> Vendor:
     return vendor if writer is None else replace(vendor, writer=_Uncommented(writer))
 
 
+def _unlogged(vendor: Vendor) -> Vendor:
+    """Recordings that drive and log nothing."""
+    recorder, writer = vendor.recorder, vendor.writer
+    if recorder is None or writer is None:
+        return vendor
+
+    def write(_: Recorder, recording: Recording, robot: Robot, period: float) -> Sources:
+        return writer.write(recording.program, robot, {"opaque": OpaqueStyle.COMMENT.value})
+
+    return replace(vendor, recorder=FaultyRecorder(recorder, write))
+
+
+def _rarely_logged(vendor: Vendor) -> Vendor:
+    """Recordings that log half as often as asked."""
+
+    def rarer(sound: Recorder, recording: Recording, robot: Robot, period: float) -> Sources:
+        return sound.record(recording, robot, 2 * period)
+
+    recorder = vendor.recorder
+    return vendor if recorder is None else replace(vendor, recorder=FaultyRecorder(recorder, rarer))
+
+
+def _records(suite: Subject) -> bool:
+    return suite.vendor.recorder is not None
+
+
 def _without_load(move: Move) -> Move:
     return replace(move, load=None, tool=replace(move.tool, load=None))
 
@@ -233,6 +262,8 @@ MUTANTS = (
     ),
     Mutant("zones lost on reading", in_reading(each_move(_with(zone=FINE))), GOLDEN),
     Mutant("kinds of zone lost", in_reading(each_move(_sphere)), GOLDEN, _has_other_zones),
+    Mutant("recordings log nothing", _unlogged, RECORDED, _records),
+    Mutant("recordings log at another period", _rarely_logged, RECORDED, _records),
     Mutant(
         "tools ignored on reading", in_reading(each_move(_with(tool=FLANGE))), GOLDEN, has("tool")
     ),

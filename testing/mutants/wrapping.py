@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ...core.language import Patcher, Reader, Sources, Writer
+from ...core.language import Patcher, Reader, Recorder, Sources, Writer
 from ...core.program.move import Move
 from ...core.program.program import Program
+from ...core.recording import Recording
 from ...core.robot.model import Robot
 from ...core.source.reading import Files, Reading, ReadOptions
 from ...core.vendor import Vendor
@@ -139,6 +140,26 @@ def in_patched_files(fault: Callable[[Files, Files], Files]) -> Plant:
         return replace(vendor, patcher=FaultyFiles(patcher, fault))
 
     return plant
+
+
+@dataclass(frozen=True)
+class FaultyRecorder:
+    """Records otherwise than its vendor's own."""
+
+    sound: Recorder
+    fault: Callable[[Recorder, Recording, Robot, float], Sources]
+
+    def record(self, recording: Recording, robot: Robot, period: float) -> Sources:
+        """See `flyby.core.language.Recorder`."""
+        return self.fault(self.sound, recording, robot, period)
+
+    def usual_period(self, robot: Robot) -> float:
+        """See `flyby.core.language.Recorder`."""
+        return self.sound.usual_period(robot)
+
+    def steps(self, recording: Recording, period: float) -> Sequence[str]:
+        """See `flyby.core.language.Recorder`."""
+        return self.sound.steps(recording, period)
 
 
 def everywhere(read: Fault, write: Fault) -> Plant:

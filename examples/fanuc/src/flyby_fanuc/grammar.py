@@ -120,7 +120,6 @@ class Grammar(MotionGrammar):
         r"(?P<value>[^%]+?)\s*%?",
         "assigned.offset": r"(?P<target>(?:TOOL_)?OFFSET)\s+CONDITION\s+PR\[(?P<value>.*)\]",
         "pulsed": r"(?P<target>\w+\[[^=]*?\])\s*=\s*PULSE\s*,\s*(?P<time>[\d.]+)\s*sec",
-        "harmless.pulse": r"\w+\[[^=]*?\]\s*=\s*PULSE\b.*",
         "assigned": r"(?P<target>[A-Z]+\[[^=]*?\])\s*=\s*(?P<value>[^=].*)",
     }
 

@@ -1,0 +1,79 @@
+"""What golden texts leave out, or deny, is found: forms of lines, recordings, words."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from flyby.tasks.files.new_vendor import new_vendor
+from flyby.testing.conformance import VendorConformance
+
+from ..vendors.words import AbbWords
+
+ABB = Path(__file__).parents[1] / "vendors" / "abb" / "golden.toml"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The template's plugin, and its golden file."""
+    folder = tmp_path_factory.mktemp("made") / "flyby-omega"
+    new_vendor("omega", folder)
+    sys.path.insert(0, str(folder / "src"))
+    try:
+        from flyby_omega.plugin import vendor
+    finally:
+        sys.path.remove(str(folder / "src"))
+    return vendor(), folder / "tests" / "golden.toml"
+
+
+@pytest.fixture
+def suite(made: Any, tmp_path: Path) -> Callable[[str, str], VendorConformance]:
+    """The suite of the plugin whose golden file says something else."""
+
+    def suite(old: str, new: str) -> VendorConformance:
+        text = made[1].read_text("utf-8")
+        assert old in text
+        (tmp_path / "golden.toml").write_text(text.replace(old, new), "utf-8")
+
+        class Suite(VendorConformance):
+            name = "omega"
+            vendor = made[0]
+            golden = tmp_path / "golden.toml"
+
+        return Suite()
+
+    return suite
+
+
+def test_a_form_that_no_golden_text_has_is_named(suite: Any) -> None:
+    suite("none", "none").test_every_form_of_line_counts_in_a_golden_text()
+    row = '[[texts.statements]]\nkind = "Wait"\nduration_s = 0.25\n'
+    with pytest.raises(AssertionError, match="is read otherwise without the form wait\n"):
+        suite("WAIT 0.25\n", "").test_every_form_of_line_counts_in_a_golden_text()
+    assert row in suite("none", "none").golden.read_text("utf-8")
+
+
+@pytest.mark.parametrize("word", ["MoveC", "joint target"])
+def test_what_is_there_is_not_denied(suite: Any, word: str) -> None:
+    wrong = suite('none = ["tool"', f'none = ["{word}", "tool"')
+    with pytest.raises(AssertionError, match=rf"none = \['{word}'\] denies what the golden texts"):
+        wrong.test_golden_texts_cover_the_language()
+
+
+def test_a_recorder_without_a_golden_recording_is_named(tmp_path: Path) -> None:
+    text = ABB.read_text("utf-8")
+    line = next(line for line in text.splitlines() if line.startswith("recorded"))
+    (tmp_path / "golden.toml").write_text(text.replace(line, ""), "utf-8")
+
+    class Suite(AbbWords, VendorConformance):
+        golden = tmp_path / "golden.toml"
+
+    with pytest.raises(AssertionError, match="no golden text has: recording"):
+        Suite().test_golden_texts_cover_the_language()
+    (tmp_path / "golden.toml").write_text(text.replace("24, lines", "12, lines"), "utf-8")
+    with pytest.raises(AssertionError, match="recorded every 12 ms, has no 'ITimer"):
+        Suite().test_golden_recordings_log_as_their_author_says()
