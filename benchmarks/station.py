@@ -25,7 +25,8 @@ from report import Figure, main
 
 from flyby.core.cell.floor import bare_cell
 from flyby.core.cell.geometry import Geometry
-from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
+from flyby.core.collision.mutual.meetings import Meetings
+from flyby.core.collision.mutual.pair_proof import PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
 from flyby.core.collision.scene.bodies import tool_like_solids
 from flyby.core.motion.emulator.controller import Controller

@@ -20,12 +20,14 @@ class Cue(NamedTuple):
         text: of the statement, in one line.
         span: where it stands.
         attach, release: kinds of parts that it takes, and lets go of.
+        statement: index of the program's statement that it is, is called before, or happens on.
     """
 
     text: str
     span: Span | None
     attach: tuple[Workpiece, ...]
     release: tuple[Workpiece, ...]
+    statement: int
 
 
 def in_order(program: Program, parts: Sequence[Workpiece]) -> Iterator[Cue | Move]:
@@ -42,19 +44,19 @@ def in_order(program: Program, parts: Sequence[Workpiece]) -> Iterator[Cue | Mov
     for index, statement in enumerate(program.statements):
         while calls and calls[-1].before <= index:
             call = calls.pop()
-            yield from cues.of(call.text, call.span)
+            yield from cues.of(call.text, call.span, index)
         if isinstance(statement, Move):
             for event in statement.events:
                 if event.anchor is EventAnchor.START:
-                    yield from cues.of(event.text, event.span)
+                    yield from cues.of(event.text, event.span, index)
             yield statement
             for event in statement.events:
                 if event.anchor is EventAnchor.END:
-                    yield from cues.of(event.text, event.span)
+                    yield from cues.of(event.text, event.span, index)
         elif isinstance(statement, Opaque):
-            yield from cues.of(statement.text, statement.span)
+            yield from cues.of(statement.text, statement.span, index)
     for call in reversed(calls):
-        yield from cues.of(call.text, call.span)
+        yield from cues.of(call.text, call.span, len(program.statements))
 
 
 class _Cues:
@@ -68,13 +70,13 @@ class _Cues:
             tuple[str, str, int], tuple[tuple[Workpiece, ...], tuple[Workpiece, ...]]
         ] = {}
 
-    def of(self, text: str, span: Span | None) -> Iterator[Cue]:
+    def of(self, text: str, span: Span | None, statement: int) -> Iterator[Cue]:
         place = (text, "", 0) if span is None else (text, span.file, span.line)
         if place not in self._known:
             self._known[place] = self._look_up(text, span)
         attach, release = self._known[place]
         if attach or release:
-            yield Cue(" ".join(text.split()).rstrip(";"), span, attach, release)
+            yield Cue(" ".join(text.split()).rstrip(";"), span, attach, release, statement)
 
     def _look_up(
         self, text: str, span: Span | None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from ..cell.cell import Cell
 from ..cell.workpiece import Workpiece
@@ -24,6 +25,22 @@ _SAME = 1e-6
 """m, and of quaternions, within which the flange has not moved."""
 
 
+class ChangeOfHands(NamedTuple):
+    """A part that is taken or released.
+
+    Args:
+        name: of the part.
+        taken: whether it is taken.
+        move: index of the move before; -1 before the first.
+        statement: index of the statement of the program that does it.
+    """
+
+    name: str
+    taken: bool
+    move: int
+    statement: int
+
+
 @dataclass(frozen=True)
 class Handling:
     """What a program does to the parts of its cell.
@@ -34,6 +51,8 @@ class Handling:
             where it ends, likewise.
         notes: what the user should know.
         start: where the robot stands before the first move; None if nobody knows.
+        changes: what is taken and released, in turn.
+        last: where all parts are behind the last move.
     """
 
     arrangements: tuple[Arrangement, ...]
@@ -41,6 +60,8 @@ class Handling:
     behind: tuple[frozenset[str], ...]
     notes: tuple[Note, ...]
     start: JointTarget | None = None
+    changes: tuple[ChangeOfHands, ...] = ()
+    last: Arrangement = ()
 
     @property
     def targets(self) -> tuple[int, ...]:
@@ -82,6 +103,7 @@ class _Trace:
         self._fresh: set[str] = set()
         self._notes: list[Note] = []
         self._met: set[tuple[str, str]] = set()
+        self._changes: list[ChangeOfHands] = []
 
     def through(self, program: Program) -> Handling:
         arrangements = []
@@ -98,7 +120,15 @@ class _Trace:
             self._check_met(part)
         before, behind = (tuple(map(frozenset, sets)) for sets in (self._before, self._behind))
         notes = tuple(dict.fromkeys(self._notes))
-        return Handling(tuple(arrangements), before, behind, notes, self._start)
+        return Handling(
+            tuple(arrangements),
+            before,
+            behind,
+            notes,
+            self._start,
+            tuple(self._changes),
+            self._now,
+        )
 
     def _drive(self, move: Move) -> None:
         """Follow a move; what was handled before one that goes nowhere is so before the next."""
@@ -134,7 +164,7 @@ class _Trace:
             )
             return
         pose = flange.inverse() @ self._flange.frame(nearest.carrier) @ nearest.pose
-        self._put(nearest, replace(nearest, pose=pose, held=True, carrier=None))
+        self._put(nearest, replace(nearest, pose=pose, held=True, carrier=None), cue)
         self._taken_at[part.name] = tcp
 
     def _release(self, part: Workpiece, cue: Cue) -> None:
@@ -159,7 +189,7 @@ class _Trace:
             there = replace(
                 placed, pose=pose, held=False, carrier=part.released_on, gone=part.leaves
             )
-            self._put(placed, there)
+            self._put(placed, there, cue)
 
     def _distance(self, placed: PlacedPart, tcp: Vector3) -> float:
         if placed.part.name not in self._boxes:
@@ -167,7 +197,9 @@ class _Trace:
         place = self._flange.frame(placed.carrier) @ placed.pose
         return distance_to_box(tcp, place, self._boxes[placed.part.name])
 
-    def _put(self, before: PlacedPart, after: PlacedPart) -> None:
+    def _put(self, before: PlacedPart, after: PlacedPart, cue: Cue) -> None:
+        move = len(self._stays) - 1
+        self._changes.append(ChangeOfHands(after.name, after.held, move, cue.statement))
         self._now = tuple(after if placed is before else placed for placed in self._now)
         self._fresh.add(after.name)
         for move in reversed(range(len(self._stays))):

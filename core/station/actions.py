@@ -6,6 +6,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,7 @@ class Action:
         text: as it stands in the source.
         span: where.
         earliest: s, when the program may be there already; None for not before `time`.
+        statement: index of the statement of the program that it is, or happens on.
     """
 
     does: SignalAction | Meet
@@ -38,6 +40,7 @@ class Action:
     text: str
     span: Span | None
     earliest: float | None = None
+    statement: int = -1
 
     @property
     def soonest(self) -> float:
@@ -67,7 +70,7 @@ def _between(run: Run, words: SignalWords, places: _Places) -> Iterator[Action]:
     """Statements that stand between moves."""
     move, waited = -1, 0.0
     total = _waits(run)
-    for statement in run.program.statements:
+    for index, statement in enumerate(run.program.statements):
         if isinstance(statement, Move):
             move, waited = move + 1, 0.0
         elif isinstance(statement, Wait):
@@ -81,7 +84,39 @@ def _between(run: Run, words: SignalWords, places: _Places) -> Iterator[Action]:
             ahead = isinstance(does, SetSignal) or not statement.stops
             earliest = places.entered(move) if ahead else time
             text = _in_a_line(statement.text)
-            yield Action(does, time, move, text, statement.span, min(earliest, time))
+            yield Action(does, time, move, text, statement.span, min(earliest, time), index)
+
+
+class Stand(NamedTuple):
+    """A target at which a program stops.
+
+    Args:
+        reached, left: s of its own clock.
+        at: of a statement that it carries out there.
+    """
+
+    reached: float
+    left: float
+    at: float
+
+
+def stand_of(run: Run, move: int, statement: int) -> Stand:
+    """When a driven program stands at the end of a move, and is at a statement behind it.
+
+    Args:
+        run: the whole program as driven.
+        move: its index.
+        statement: index among the program's statements.
+    """
+    reached, left = _Places(run).of(move)
+    waits: list[list[float]] = [[], []]
+    count = -1
+    for index, one in enumerate(run.program.statements):
+        if isinstance(one, Move):
+            count += 1
+        elif isinstance(one, Wait) and count == move:
+            waits[index > statement].append(one.duration)
+    return Stand(reached, left, max(reached, left - sum(waits[1])))
 
 
 def _waits(run: Run) -> dict[int, float]:

@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import FloatArray, IntArray
-from ..collision.mutual.pair_proof import Meetings, PairProver, PairVerdict
+from ..collision.mutual.conflict import PairVerdict
+from ..collision.mutual.handed_part import HandedPart
+from ..collision.mutual.meetings import InTurn, Meetings
+from ..collision.mutual.pair_proof import PairProver
 from ..collision.mutual.robot_motion import RobotMotion
 from .actions import Action
 from .clock import Schedule, StationRun
+from .hand_over import HandOvers, follow_hand_overs
 from .orders import Orders, sections_mask
 from .station import RobotStation, StationRobot
+from .turns import turn_by_clocks, turn_by_orders
 
 _SAMPLED = (0.05, 0.002)
 """s between the instants at which the least distance is looked for, and round the least."""
@@ -66,22 +73,32 @@ class StationProver:
     ) -> None:
         self._station, self._actions = station, actions
         known: dict[str, RobotMotion] = {} if before is None else before._motions
+        members = station.members
         self._motions: dict[str, RobotMotion] = {
-            name: known[name]
-            if name in known and known[name].run is member.run
-            else self._swept(member)
-            for name, member in station.members.items()
+            name: motion for name, motion in known.items() if motion.run is members[name].run
         }
-        self._passing = {
-            name: self._swept(replace(member, run=member.passing.run))
-            for name, member in station.members.items()
-            if member.passing is not None
-        }
+        self._passing: dict[str, RobotMotion] = {}
         self._provers: dict[tuple[str, str], PairProver] = {}
         if before is not None:
-            for pair, prover in before._provers.items():
-                if prover.one is self._motions[pair[0]] and prover.other is self._motions[pair[1]]:
-                    self._provers[pair] = prover
+            self._provers |= {
+                pair: prover
+                for pair, prover in before._provers.items()
+                if all(name in self._motions for name in pair)
+            }
+
+    @cached_property
+    def _hand_overs(self) -> HandOvers:
+        """Parts that change hands, as the programs are driven now."""
+        return follow_hand_overs(self._station)
+
+    def _motion(self, name: str, *, passing: bool = False) -> RobotMotion:
+        """Of a robot that stops for all waits, or passes through zones which they stand behind."""
+        known, member = self._passing if passing else self._motions, self._station.members[name]
+        if name not in known:
+            if passing and member.passing is not None:
+                member = replace(member, run=member.passing.run)
+            known[name] = self._swept(member)
+        return known[name]
 
     def _swept(self, member: StationRobot) -> RobotMotion:
         """With the obstacles that some other robot has not in its own cell."""
@@ -98,38 +115,39 @@ class StationProver:
             member.run,
             member.cell,
             lone,
-            member.handling,
+            self._hand_overs.handling(member),
             any_speed=True,
         )
 
     def prover(self, one: str, other: str) -> PairProver:
         """Of two robots that stop for all waits."""
         if (one, other) not in self._provers:
-            self._provers[one, other] = self._of(one, other, (self._motions, self._motions))
+            self._provers[one, other] = self._of(one, other, (False, False))
         return self._provers[one, other]
 
-    def _of(
-        self, one: str, other: str, motions: tuple[Mapping[str, RobotMotion], ...]
-    ) -> PairProver:
+    def _of(self, one: str, other: str, passing: tuple[bool, bool]) -> PairProver:
         allowed = [
             pair
             for a, b in self._station.allowed
             for pair in (_own(a, b, one, other), _own(b, a, one, other))
             if pair is not None
         ]
-        return PairProver(motions[0][one], motions[1][other], allowed)
+        first, second = (
+            self._motion(name, passing=passes)
+            for name, passes in zip((one, other), passing, strict=True)
+        )
+        return PairProver(first, second, allowed, self._hand_overs.between(one, other))
 
     def _variants(self, one: str, other: str) -> Iterator[tuple[PairProver, tuple[bool, bool]]]:
         """Provers of two robots, and which of them passes through zones that waits stand behind."""
         yield self.prover(one, other), (False, False)
         for passes in ((True, False), (False, True), (True, True)):
             if all(
-                name in self._passing
+                self._station.members[name].passing is not None
                 for name, passing in zip((one, other), passes, strict=True)
                 if passing
             ):
-                chosen = tuple(self._passing if p else self._motions for p in passes)
-                yield self._of(one, other, chosen), passes
+                yield self._of(one, other, passes), passes
 
     def any_time(self, one: str, other: str) -> PairVerdict:
         """What is proven of two robots whatever the clocks say."""
@@ -180,8 +198,16 @@ class StationProver:
         schedules = run.schedules[one], run.schedules[other]
         least, at = self._sampled(prover, schedules)
         clocks = schedules[0].clocked, schedules[1].clocked
+
+        def in_turn(part: HandedPart) -> InTurn:
+            hand_over = self._hand_overs.of(part, one, other)
+            runs, clocked = (prover.one.run, prover.other.run), schedules
+            if part.giver:
+                runs, clocked = runs[::-1], clocked[::-1]
+            return turn_by_clocks(hand_over, runs, clocked, 2.0 * jitter)
+
         until = at + _SAMPLED[0] if least < clearance else np.inf
-        meetings = Meetings(clocks, 2.0 * jitter, every=False, until=until)
+        meetings = Meetings(clocks, 2.0 * jitter, every=False, until=until, in_turn=in_turn)
         verdict = prover.prove(clearance, meetings)
         if verdict.proven and until < np.inf:
             # What samples took for too near is not: nothing behind it is known yet.
@@ -207,16 +233,38 @@ class StationProver:
                 self._passed(name, actions[name]) if passing else actions[name]
                 for name, passing in zip((one, other), passes, strict=True)
             ]
-            together = None
+            meetings = Meetings(clocks)
             if doings[0] is not None and doings[1] is not None:
+                own = doings[0], doings[1]
                 together = sections_mask(
                     reachable,
-                    (doings[0], doings[1]),
+                    own,
                     (_own_times(prover.one), _own_times(prover.other)),
                     (prover.one.run.timing.lag, prover.other.run.timing.lag),
                 )
-            found.append(prover.prove(wanted, Meetings(clocks, together=together)))
+                in_turn = self._in_turn(one, other, prover, own, reachable)
+                meetings = Meetings(clocks, together=together, in_turn=in_turn)
+            found.append(prover.prove(wanted, meetings))
         return _worst(found)
+
+    def _in_turn(
+        self,
+        one: str,
+        other: str,
+        prover: PairProver,
+        actions: tuple[Sequence[Action], Sequence[Action]],
+        reachable: NDArray[np.bool_],
+    ) -> Callable[[HandedPart], InTurn]:
+        """In which order parts change hands in all orders that the signals allow."""
+        runs = prover.one.run, prover.other.run
+
+        def in_turn(part: HandedPart) -> InTurn:
+            hand_over = self._hand_overs.of(part, one, other)
+            if part.giver:
+                return turn_by_orders(hand_over, runs[::-1], actions[::-1], reachable.T)
+            return turn_by_orders(hand_over, runs, actions, reachable)
+
+        return in_turn
 
     def _passed(self, name: str, actions: Sequence[Action]) -> Sequence[Action] | None:
         """The same actions of a robot that passes through zones; None where they are others.

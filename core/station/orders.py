@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.mutual.pair_proof import Together
+from ..collision.mutual.meetings import Together
 from ..errors import InputError
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action

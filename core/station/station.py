@@ -107,6 +107,21 @@ class Wire:
         return 0.5 * (self.least + self.greatest)
 
 
+@dataclass(frozen=True, slots=True)
+class HandOver:
+    """A part that one robot hands to another.
+
+    Args:
+        giver, given: the robot that has it first, and what its cell calls the part.
+        taker, taken: the other robot, and what its cell calls it.
+    """
+
+    giver: str
+    given: str
+    taker: str
+    taken: str
+
+
 @dataclass(frozen=True, repr=False)
 class RobotStation:
     """Robots that share a cell.
@@ -121,6 +136,7 @@ class RobotStation:
         allowed: pairs of ``robot.thing`` that may touch.
         file: that it was read from.
         zones: spaces with outputs.
+        hand_overs: parts that robots hand to each other.
     """
 
     members: Mapping[str, StationRobot]
@@ -132,6 +148,7 @@ class RobotStation:
     allowed: tuple[tuple[str, str], ...] = ()
     file: Path | None = None
     zones: tuple[WorldZone, ...] = ()
+    hand_overs: tuple[HandOver, ...] = ()
 
     def __repr__(self) -> str:
         name = "" if self.file is None else f" {self.file.name}"

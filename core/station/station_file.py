@@ -15,7 +15,7 @@ from ..files.tables import LENGTH, TomlTable
 from ..program.world_zone import WorldZone
 from .gates import Gate, GateKind, Input
 from .plc import PLC
-from .station import Wire, signal_key
+from .station import HandOver, Wire, signal_key
 
 _DELAY = {"ms": 1e-3, "s": 1.0}
 _LONGEST = 60.0
@@ -56,6 +56,7 @@ class StationFile:
         allowed: pairs of ``robot.thing``.
         file: that it is.
         zones: spaces with outputs.
+        hand_overs: parts that robots hand to each other.
     """
 
     members: tuple[MemberFile, ...]
@@ -67,6 +68,7 @@ class StationFile:
     allowed: tuple[tuple[str, str], ...]
     file: Path
     zones: tuple[WorldZone, ...] = ()
+    hand_overs: tuple[HandOver, ...] = ()
 
 
 def read_station_file(path: str | Path) -> StationFile:
@@ -100,6 +102,10 @@ def read_station_file(path: str | Path) -> StationFile:
     ):
         raise allow.error("pairs", 'must be pairs of names, [["left.gun", "right.fixture"]]')
     zones = tuple(_zone(name, table) for name, table in file.named_tables("zone").items())
+    hand_overs = tuple(
+        _hand_over(table, {member.name.casefold(): member.name for member in members})
+        for table in file.listed_tables("hand_over")
+    )
     file.finish()
     names = {member.name.casefold() for member in members} | {PLC}
     made = StationFile(
@@ -112,6 +118,7 @@ def read_station_file(path: str | Path) -> StationFile:
         tuple((a, b) for a, b in pairs),
         Path(path),
         zones,
+        hand_overs,
     )
     _check_robots(made, names)
     return made
@@ -254,6 +261,20 @@ def _zone(name: str, table: TomlTable) -> WorldZone:
     )
 
 
+def _hand_over(table: TomlTable, robots: Mapping[str, str]) -> HandOver:
+    """``[[hand_over]]``: ``part = "left.crate"``, ``to = "right.crate"``."""
+    found: list[str] = []
+    for key in ("part", "to"):
+        robot, dot, part = table.text(key).partition(".")
+        if not dot or not part.strip():
+            raise table.error(key, "names a part of a robot's cell: left.crate")
+        found += [robots.get(robot.strip().casefold(), robot.strip()), part.strip()]
+    table.finish()
+    if found[0] == found[2]:
+        raise table.error("to", "is a part of another robot's cell")
+    return HandOver(*found)
+
+
 def _is_range(given: object) -> bool:
     if not isinstance(given, list) or len(given) != 3:
         return False
@@ -287,6 +308,11 @@ def _check_robots(made: StationFile, names: set[str]) -> None:
     told += [("initial", name) for name in made.initial]
     told += [("given", name) for name in made.given]
     told += [("allow.pairs", name) for pair in made.allowed for name in pair]
+    told += [
+        ("hand_over", f"{robot}.{part}")
+        for each in made.hand_overs
+        for robot, part in ((each.giver, each.given), (each.taker, each.taken))
+    ]
     gates = {signal_key(f"{PLC}.{name}") for name in made.gates}
     for where, name in told:
         robot, dot, rest = name.partition(".")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...core.collision.mutual.pair_proof import Conflict, ConflictCause, PairVerdict
+from ...core.collision.mutual.conflict import Conflict, ConflictCause, PairVerdict
 from ...core.display import counted, in_line
 from ...core.errors import Note, Span
 from ...core.notebook import page, table

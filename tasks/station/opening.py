@@ -50,6 +50,7 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         InputError, MotionError: as `station_with`.
     """
     from ...core.station.actions import actions_of, unknown_of
+    from ...core.station.hand_over import check_hand_overs
     from ...core.station.station import RobotStation
     from ...core.station.station_file import read_station_file
     from ...core.station.synchronised import synchronised
@@ -89,7 +90,6 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         why = "; ".join(note.message for note in unknown if "not followed" in note.message)
         raise InputError(f"{error}; {why}" if why else str(error)) from None
     _check_starts(file, members)
-    check_own_parts(file, members.values())
     try:
         shared = synchronised({n: m.run for n, m in members.items()}, actions, ids)
     except InputError as error:
@@ -111,7 +111,10 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         file.allowed,
         file.file,
         file.zones,
+        file.hand_overs,
     )
+    check_hand_overs(station)
+    check_own_parts(file, members.values())
     if not is_station_file(source):
         notes.append(
             Note(

@@ -7,9 +7,7 @@ of intervals then halved, the one that moves more, until it is proven or found t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from enum import StrEnum
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +18,10 @@ from ..distance.closed_form import Hulls, measure
 from ..distance.coal_engine import CoalEngine
 from ..distance.containment import Nesting
 from ..distance.engine import BodyPoses
+from .conflict import Conflict, ConflictCause, PairVerdict
+from .handed_part import HandedPairs, HandedPart
 from .interval_tree import interval_tree, near_pairs
+from .meetings import InTurn, Meetings
 from .pair_bounds import PairBounds, bound_measured, bound_pairs, place_solids
 from .robot_motion import RobotMotion
 
@@ -40,102 +41,13 @@ _MOST_NEAR = 8_000_000
 BUDGET = 20_000_000
 
 
-Together = Callable[[IntArray, IntArray], tuple[NDArray[np.bool_], NDArray[np.bool_]]]
-"""Of intervals of two robots: whether both can be passed at once, and at all their places."""
-
-
-class ConflictCause(StrEnum):
-    """Why two robots are not proven to keep clear of each other."""
-
-    NEAR = "too near"
-    """They come too near."""
-    DEVIATION = "off the path"
-    """What smoothing in time and the residual may take uses up what there is."""
-    UNVERIFIED = "near a singular posture"
-    """No bounds of the configurations were found."""
-    STALLED = "within rounding"
-    """Within rounding of the clearance."""
-    EXHAUSTED = "budget used up"
-    """The budget was used up."""
-
-
-@dataclass(frozen=True, slots=True)
-class Conflict:
-    """Where two robots are not proven to keep clear.
-
-    Args:
-        cause: why.
-        moves: indices of the moves of the one and of the other.
-        pair: names of the bodies.
-        distance: m between them; None where it was not measured.
-        times: s, own times of the one and of the other there.
-        rows: the intervals of the one and of the other.
-    """
-
-    cause: ConflictCause
-    moves: tuple[int, int]
-    pair: tuple[str, str]
-    distance: float | None
-    times: tuple[float, float]
-    rows: tuple[int, int]
-
-
-@dataclass(frozen=True)
-class Meetings:
-    """When two robots may be where at once.
-
-    Args:
-        clocks: what makes of own times (L, 2) s of the one, and of the other, the station's.
-        apart: s by which the two clocks may be off against each other; infinite for at any time.
-        together: of rows (K,) of intervals, whether the two can be there at once, and whether they
-            can wherever they are on them; None for always.
-        every: whether every pair of moves is looked at; else only the first conflict in time is
-            looked for.
-        until: s on the station's clock behind which nothing is looked for.
-    """
-
-    clocks: tuple[Callable[[FloatArray], FloatArray], Callable[[FloatArray], FloatArray]]
-    apart: float = math.inf
-    together: Together | None = None
-    every: bool = True
-    until: float = math.inf
-
-    @classmethod
-    def at_any_time(cls) -> Meetings:
-        """Whatever the two clocks say."""
-        return cls((_as_it_is, _as_it_is))
-
-
-def _as_it_is(own: FloatArray) -> FloatArray:
-    return own
-
-
-@dataclass
-class PairVerdict:
-    """What was found of two robots.
-
-    Args:
-        clearance: m that is proven where there is no conflict.
-        conflicts: by moves of the one and of the other.
-        looks: how many bounds were made.
-    """
-
-    clearance: float
-    conflicts: dict[tuple[int, int], Conflict] = field(default_factory=dict)
-    looks: int = 0
-
-    @property
-    def proven(self) -> bool:
-        """Whether nothing is left."""
-        return not self.conflicts
-
-
 class PairProver:
     """Two robots.
 
     Args:
         one, other: their motions.
         allowed: pairs of names of things that may touch, of the one and of the other.
+        handed: parts that one of them hands to the other.
     """
 
     def __init__(
@@ -143,6 +55,7 @@ class PairProver:
         one: RobotMotion,
         other: RobotMotion,
         allowed: Sequence[tuple[str, str]] = (),
+        handed: Sequence[HandedPart] = (),
     ) -> None:
         self.one, self.other = one, other
         self.pairs: IntArray = np.array(
@@ -158,6 +71,8 @@ class PairProver:
         solids = [own.body.solid for own in (*one.bodies, *other.bodies)]
         self._engine = CoalEngine(solids, Nesting(solids))
         self._count = len(solids)
+        self.handed = tuple(handed)
+        self._handed = [HandedPairs(part, (one, other), self.pairs) for part in handed]
 
     def prove(self, clearance: float, meetings: Meetings, budget: int = BUDGET) -> PairVerdict:
         """Whether the two keep a clearance of each other.
@@ -167,7 +82,41 @@ class PairProver:
             meetings: when they may be where at once.
             budget: how many bounds may be made.
         """
-        return _Search(self, clearance, meetings, budget).run()
+        verdict = _Search(self, clearance, meetings, budget).run()
+        for part in self.handed:
+            for conflict in self._out_of_turn(part, meetings.in_turn(part)):
+                verdict.conflicts.setdefault(conflict.moves, conflict)
+        return verdict
+
+    def _out_of_turn(self, part: HandedPart, turn: InTurn) -> Iterator[Conflict]:
+        """What is wrong with how a part changes hands."""
+        motions = (self.one, self.other)
+        taker = motions[1 - part.giver]
+        off = [move for move in taker.run.path.route.moves if move > part.moves[1]]
+        found = [] if turn.brought else [(ConflictCause.EARLY, part.moves, "")]
+        if turn.brought and not (turn.held or part.rests):
+            found.append((ConflictCause.DROPPED, part.moves, ""))
+        if not turn.let_go and off:
+            found.append((ConflictCause.TORN, (part.moves[0], off[0]), ""))
+        found += [(ConflictCause.OWN_CELL, part.moves, why) for why in part.unproven]
+        for cause, own, why in found:
+            moves = own if part.giver == 0 else own[::-1]
+            names = part.names if part.giver == 0 else part.names[::-1]
+            rows = [
+                int(np.flatnonzero(motion.moves == move)[-1])
+                for motion, move in zip(motions, moves, strict=True)
+            ]
+            times = [
+                _middle(motion.own_time[row]) for motion, row in zip(motions, rows, strict=True)
+            ]
+            yield Conflict(cause, moves, names, None, (times[0], times[1]), (rows[0], rows[1]), why)
+
+    def skipped(self, items: IntArray) -> NDArray[np.bool_]:
+        """Which items (K, 3) are none, as a part changes hands there."""
+        out = np.zeros(len(items), dtype=np.bool_)
+        for pairs in self._handed:
+            out |= pairs.skipped(*items.T)
+        return out
 
     def measure(self, items: IntArray, wanted: float, found: PairBounds) -> None:
         """Distances and normals of items at the middles, by the engine.
@@ -223,6 +172,9 @@ class PairProver:
             bound = measure(hulls, self.pairs + shift, R, p, least[0], found.numbers)
             if moves is not None:
                 gone = ~self._there(moves[0][part], moves[1][part])
+                for handed in self._handed:
+                    at, own = (q[part], other[part]), (moves[0][part], moves[1][part])
+                    gone |= handed.skipped_at(at, own, len(self.pairs))
                 found.distance[gone] = bound[gone] = np.inf
             k, row = np.unravel_index(int(found.distance.argmin()), found.distance.shape)
             if found.distance[k, row] < least[0]:
@@ -293,7 +245,7 @@ class _Search:
         """Those whose intervals can be passed at once, and are not decided yet."""
         prover, meetings = self._prover, self._meetings
         i, j = items[:, 0], items[:, 1]
-        kept = np.ones(len(items), dtype=bool)
+        kept = ~prover.skipped(items)
         if meetings.apart < math.inf:
             first, second = self._clocked(i, j)
             kept &= first[:, 0] <= second[:, 1] + meetings.apart

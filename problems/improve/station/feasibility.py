@@ -14,12 +14,8 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 from itertools import combinations
 
-from ....core.collision.mutual.pair_proof import (
-    Conflict,
-    ConflictCause,
-    Meetings,
-    PairVerdict,
-)
+from ....core.collision.mutual.conflict import Conflict, ConflictCause, PairVerdict
+from ....core.collision.mutual.meetings import Meetings
 from ....core.collision.proof.verdict import Certificate, Verdict
 from ....core.dialect import SignalWords
 from ....core.errors import InputError, MotionError

@@ -126,3 +126,31 @@ def test_parts_that_a_program_does_not_meet_are_said(tmp_path: Path) -> None:
     never = CELL.replace('attach = "set', 'attach = "never')
     notes = flyby.station(station(tmp_path, never), no_proof=True).notes
     assert [n.message.startswith("pick: ") for n in notes if "'bottle'" in n.message] == [True]
+
+
+def test_parts_are_told_by_the_space_that_they_fill(tmp_path: Path) -> None:
+    """Shapes with their origins at one place are two parts, and one part may have two origins."""
+    stays = CELL.replace("leaves = true", "")
+    put = """[[part]]
+name = "piece"
+{shape}
+pose = {{ xyz_mm = [{at}] }}
+attach = "movej"
+release = "movel"
+"""
+    corners = [f"{x} {y} {z}" for x in (0, 400) for y in (0, 60) for z in (0, 60)]
+    faces = (
+        "0 1 3", "0 3 2", "4 6 7", "4 7 5", "0 4 5", "0 5 1",
+        "2 3 7", "2 7 6", "0 2 6", "0 6 4", "1 5 7", "1 7 3",
+    )  # fmt: skip
+    text = "".join(f"v {c}\n" for c in corners)
+    text += "".join(f"f {' '.join(str(int(k) + 1) for k in f.split())}\n" for f in faces)
+    (tmp_path / "piece.obj").write_text(text, "utf-8")
+    mesh = 'mesh = "piece.obj"\nunits = "mm"'
+    beside = put.format(shape=mesh, at="-450, 250, 170")
+    assert flyby.station(station(tmp_path, stays, more=beside), no_proof=True).station
+    small = put.format(shape="box_mm = [40, 60, 60]", at="-450, 250, 170")
+    assert flyby.station(station(tmp_path, stays, more=small), no_proof=True).station
+    same = put.format(shape=mesh, at="-650, 220, 140")
+    with pytest.raises(InputError, match=r"'bottle' of pick lies where 'piece' of other does"):
+        flyby.station(station(tmp_path, stays, more=same), no_proof=True)

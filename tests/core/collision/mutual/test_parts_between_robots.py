@@ -13,7 +13,8 @@ from flyby.core.cell.cell import Cell, Obstacle
 from flyby.core.cell.floor import bare_cell
 from flyby.core.cell.geometry import Geometry
 from flyby.core.cell.workpiece import Workpiece
-from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
+from flyby.core.collision.mutual.meetings import Meetings
+from flyby.core.collision.mutual.pair_proof import PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
 from flyby.core.errors import InputError
 from flyby.core.handling.handling import handling_of

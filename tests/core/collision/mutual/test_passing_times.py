@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from flyby.core.cell.floor import bare_cell
-from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
+from flyby.core.collision.mutual.meetings import Meetings
+from flyby.core.collision.mutual.pair_proof import PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run

@@ -11,7 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.cell.floor import bare_cell
-from flyby.core.collision.mutual.pair_proof import Meetings, PairProver
+from flyby.core.collision.mutual.meetings import Meetings
+from flyby.core.collision.mutual.pair_proof import PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run

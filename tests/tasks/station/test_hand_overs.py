@@ -1,0 +1,268 @@
+"""Parts that one robot hands to another: proven in all orders, and never where sampling disagrees.
+
+What happens is followed by itself: who holds the bar when, by the times of the statements on the
+station's clock, with the robots begun at any times; then everything is measured every 5 ms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import flyby
+from flyby.core.arrays import FloatArray, IntArray
+from flyby.core.collision.mutual.conflict import ConflictCause
+from flyby.core.collision.mutual.pair_proof import PairProver
+from flyby.core.collision.mutual.robot_motion import RobotMotion
+from flyby.core.errors import InputError
+from flyby.core.handling.arrangement import PlacedPart
+from flyby.core.handling.handling import Handling
+from flyby.core.station.actions import actions_of
+from flyby.core.station.clock import Schedule, StationClock
+from flyby.core.station.station import StationRobot
+from flyby.tasks.results.stations import DrivenStation
+from flyby.tasks.setup import setup_of_program
+
+from .hand_over_scene import hand_over
+
+CLEARANCE = 0.005
+
+
+def causes(made: DrivenStation) -> set[ConflictCause]:
+    (pair,) = made.clearances
+    assert pair.interlocked is not None
+    return {conflict.cause for conflict in pair.interlocked.conflicts.values()}
+
+
+def test_two_arms_hold_one_part_and_one_lets_go(tmp_path: Path) -> None:
+    made = flyby.station(hand_over(tmp_path))
+    (pair,) = made.clearances
+    assert made.clear and pair.interlocked is not None and pair.interlocked.proven
+    assert not pair.any_time.proven and pair.least >= CLEARANCE
+    assert not made.findings()
+
+
+@pytest.mark.parametrize(
+    ("without", "early", "cause", "said"),
+    [
+        (["brought"], False, ConflictCause.EARLY, "right may come for left.bar before left stands"),
+        (["held"], False, ConflictCause.DROPPED, "left may let go of left.bar before right has it"),
+        # It lifts the bar into the gripper that holds it, or has just let go.
+        (["away"], False, ConflictCause.NEAR, "left's tcp and right's bar"),
+        ([], True, ConflictCause.NEAR, "left's tcp and right's bar"),
+    ],
+)
+def test_each_signal_is_needed(
+    tmp_path: Path, without: list[str], early: bool, cause: ConflictCause, said: str
+) -> None:
+    made = flyby.station(hand_over(tmp_path, without, early=early))
+    (pair,) = made.clearances
+    assert pair.interlocked is not None and not pair.interlocked.proven
+    told = [made.conflict_said(pair, c) for c in pair.interlocked.conflicts.values()]
+    assert cause in causes(made)
+    assert any(said in text and "giver.script" in text for text in told)
+
+
+def test_who_drives_off_before_the_other_has_let_go_tears_the_part(tmp_path: Path) -> None:
+    """The giver has no shape that could touch: only its holding is in the way."""
+    file = hand_over(tmp_path, ["away"])
+    cell = (tmp_path / "left.toml").read_text("utf-8")
+    bare = cell.replace("cylinder_mm = [30.0, 110]\npose = { xyz_mm = [0, 0, 55] }\n", "")
+    assert bare != cell
+    (tmp_path / "left.toml").write_text(bare, "utf-8")
+    assert ConflictCause.TORN in causes(flyby.station(file))
+
+
+def test_a_part_put_down_may_be_taken_later(tmp_path: Path) -> None:
+    file = hand_over(tmp_path, ["held"])
+    assert causes(flyby.station(file)) == {ConflictCause.DROPPED}
+    table = '[[obstacle]]\nname = "table"\nbox_mm = [300, 200, 20]\n'
+    table += "pose = { xyz_mm = [-800, 0, 329.5] }\n"
+    for cell in ("left.toml", "right.toml"):
+        text = (tmp_path / cell).read_text("utf-8")
+        (tmp_path / cell).write_text(text + table, "utf-8")
+    assert flyby.station(file).clear
+
+
+def test_what_two_cells_say_of_one_part_must_agree(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"50\.0 mm and 0\.0° from .*\[-800\.000, 0\.000, 370"):
+        flyby.station(hand_over(tmp_path, at="-800, 50, 370"), no_proof=True)
+    file = hand_over(tmp_path)
+    text = (tmp_path / "right.toml").read_text("utf-8")
+    (tmp_path / "right.toml").write_text(text.replace("[400.0, 60", "[401, 60"), "utf-8")
+    with pytest.raises(InputError, match="its shape is another one"):
+        flyby.station(file, no_proof=True)
+    (tmp_path / "right.toml").write_text(text, "utf-8")
+    whole = file.read_text("utf-8")
+    file.write_text(whole.replace('"right.bar"', '"right.bear"'), "utf-8")
+    with pytest.raises(
+        InputError, match=r"hand_over of left.bar: unknown part of the cell of right 'bear'"
+    ):
+        flyby.station(file, no_proof=True)
+    file.write_text(whole.replace('"left.bar"', '"right.bar"'), "utf-8")
+    with pytest.raises(InputError, match="a part of another robot's cell"):
+        flyby.station(file, no_proof=True)
+    cut = whole.replace("[[hand_over]]", "[[other]]")
+    file.write_text(cut.split("[[other]]")[0] + "[links]" + cut.split("[links]")[1], "utf-8")
+    with pytest.raises(InputError, match=r"if one robot hands it to the other.*\[\[hand_over\]\]"):
+        flyby.station(file, no_proof=True)
+
+
+# Sampled
+
+
+class Sampled:
+    """One station, followed every few milliseconds."""
+
+    def __init__(self, made: DrivenStation) -> None:
+        self.made = made
+        self.left, self.right = made.station.members.values()
+        self.bare = {name: _motion(member, None) for name, member in made.station.members.items()}
+        self.arms = PairProver(self.bare["left"], self.bare["right"])
+        held = {
+            name: _motion(member, _held(member)) for name, member in made.station.members.items()
+        }
+        self.part = {
+            tool: {
+                "left": _of_part(PairProver(held["left"], self.bare["right"], allow(tool))),
+                "right": _of_part(PairProver(self.bare["left"], held["right"], allow(tool, True))),
+            }
+            for tool in (False, True)
+        }
+
+    def least(self, begins: tuple[float, float]) -> float:
+        """m, the least distance of what may not touch; less than nothing where the bar is torn,
+        or falls."""
+        station = self.made.station
+        members = {
+            name: replace(member, begins=begin)
+            for (name, member), begin in zip(station.members.items(), begins, strict=True)
+        }
+        run = StationClock(replace(station, members=members), self.made.actions).run()
+        left, right = (run.schedules[name] for name in ("left", "right"))
+        t = np.arange(0.0, run.duration, 5e-3)
+        rows = [_at(member, s, t) for member, s in ((self.left, left), (self.right, right))]
+        (q, moves), (other, others) = rows
+        least = self.arms.nearest(q, other, (moves, others))[0]
+        took = [_cue(self.left, left, 2), _cue(self.right, right, 3)]
+        gave = _cue(self.left, left, 4)
+        if took[1] > gave + 1e-9:  # nobody holds it
+            return -1.0
+        stands = [
+            t[np.abs(a - _stand(m, k)).max(axis=1) < 2e-3]
+            for m, a, k in ((self.left, q, 4), (self.right, other, 3))
+        ]
+        both = (t > took[1] + 5e-3) & (t < gave - 5e-3)
+        if not all(np.isin(t[both], stand).all() for stand in stands):
+            return -1.0
+        if not np.isin(t[np.argmin(np.abs(t - took[1]))], stands[0]):
+            return -1.0
+        for name, when in (
+            ("left", (t >= took[0]) & (t <= took[1])),
+            ("right", t >= took[1]),
+        ):
+            # A tool touches what it comes to, takes, and draws back from.
+            near = (
+                (others >= 2) & (others <= 3) & np.isin(t, stands[0])
+                if name == "left"
+                else (moves >= 4) & (moves <= 5) & np.isin(t, stands[1])
+            )
+            for tool, which in ((False, when & ~near), (True, when & near)):
+                if which.any():
+                    own = moves[which], others[which]
+                    found = self.part[tool][name].nearest(q[which], other[which], own)
+                    least = min(least, found[0])
+        return least
+
+
+def allow(tool: bool, turned: bool = False) -> list[tuple[str, str]]:
+    return [("tcp", "bar") if turned else ("bar", "tcp")] if tool else []
+
+
+def _of_part(prover: PairProver) -> PairProver:
+    """Only pairs with the part."""
+    names = [prover.names(row) for row in range(len(prover.pairs))]
+    prover.pairs = prover.pairs[["bar" in pair for pair in names]]
+    return prover
+
+
+def _motion(member: StationRobot, handling: Handling | None) -> RobotMotion:
+    cell = member.cell if handling is not None else replace(member.cell, parts=())
+    return RobotMotion(member.name, member.controller, member.run, cell, (), handling)
+
+
+def _held(member: StationRobot) -> Handling:
+    """The bar in the hand all along."""
+    assert member.handling is not None
+    held: list[PlacedPart] = [
+        placed
+        for arrangement in member.handling.arrangements
+        for placed in arrangement
+        if placed.held
+    ]
+    count = len(member.handling.arrangements)
+    return replace(member.handling, arrangements=((held[0],),) * count)
+
+
+def _at(member: StationRobot, schedule: Schedule, t: FloatArray) -> tuple[FloatArray, IntArray]:
+    trajectory, own = member.run.trajectory, schedule.own(t)
+    row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
+    q = np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
+    return q, trajectory.move[row]
+
+
+def _stand(member: StationRobot, move: int) -> FloatArray:
+    route = member.run.path.route
+    return route.ends.q[list(route.moves).index(move), 1]
+
+
+def _cue(member: StationRobot, schedule: Schedule, move: int) -> float:
+    """s of the station at which the output of the gripper is set behind a move."""
+    words = setup_of_program(member.program).vendor.speaks.signals
+    (action,) = [a for a in actions_of(member.run, words) if a.move == move and "out(0" in a.text]
+    waited = sum(
+        spell.end - spell.begin
+        for spell in schedule.waits
+        if spell.action.statement < action.statement
+    )
+    return action.time + schedule.begin + waited
+
+
+@settings(max_examples=6, deadline=None)
+@given(
+    without=st.sets(st.sampled_from(["brought", "held", "away"]), max_size=1),
+    early=st.booleans(),
+    height=st.floats(0.3, 0.5),
+    back=st.floats(-0.75, -0.4),
+    radius=st.floats(20.0, 152.0),
+    begins=st.tuples(st.floats(0.0, 12.0), st.floats(0.0, 12.0)),
+)
+def test_what_is_proven_no_sampling_refutes(
+    tmp_path_factory: pytest.TempPathFactory,
+    without: set[str],
+    early: bool,
+    height: float,
+    back: float,
+    radius: float,
+    begins: tuple[float, float],
+) -> None:
+    file = hand_over(
+        tmp_path_factory.mktemp("station"),
+        without,
+        early=early,
+        height=round(height, 4),
+        back=round(back, 4),
+        radius=round(radius, 1),
+    )
+    try:
+        made = flyby.station(file)
+    except InputError:
+        return
+    (pair,) = made.clearances
+    if pair.interlocked is not None and pair.interlocked.proven:
+        assert Sampled(made).least(begins) >= CLEARANCE - 2e-5
