@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from ....core.door import spelt
 from ....core.errors import InputError, MotionError, Note
@@ -69,14 +70,17 @@ def find_points(
     moves = program.moves
     _check_freed(moves, freed)
     notes: list[Note] = []
-    skipped = _beside_left_out(controller.plan(program, start).route)
+    driven = controller.plan(program, start).route
+    skipped = _beside_left_out(driven)
+    # Of moves that go nowhere no zone is driven.
+    beside = dict(zip(driven.zone_moves, pairwise(driven.moves), strict=True))
     patterns: dict[int, Growth] = {}
     for i, move in enumerate(moves):
         if i in kept or (move.zone == FINE and i not in freed):
             continue
         if size_of(freed.get(i, move.zone)) == 0:
             continue
-        output = process.get(i) or process.get(i + 1)
+        output = next((process[j] for j in beside.get(i, ()) if j in process), None)
         if output is not None and i not in freed:
             notes.append(_note(moves, i, why_process(output)))
         elif i in skipped:

@@ -9,11 +9,13 @@ import pytest
 
 import flyby
 from flyby.core.errors import InputError
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.program import Program
 from flyby.core.program.zone import Fine
-from flyby.core.registry import find_vendor
+from flyby.core.registry import find_robot, find_vendor
 from flyby.problems.improve.process_paths import lines_moved, process_paths
 from flyby.problems.improve.solution import Moved
+from flyby.problems.improve.zones.points import find_points
 
 RAPID = """MODULE Glue
   CONST robtarget above:=[[1200,0,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];
@@ -165,3 +167,17 @@ def test_points_in_a_row_on_lines_are_said_to_have_moved() -> None:
     assert note.move == 2 and "2 points in a row" in note.message and "200 mm" in note.message
     assert not lines_moved(program, [one])
     assert not lines_moved(program, [one, replace(other, move=5)])
+
+
+def test_the_end_of_a_bead_is_kept_past_a_move_that_goes_nowhere() -> None:
+    """The zone behind it is driven where the bead ends."""
+    nowhere = "MoveL [[1200,300,800],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v200,z5,tool0;"
+    text = RAPID.replace("{off}", "{off}\n    " + nowhere)
+    words = {"stop": "z5", "on": "Set doGlue;", "off": "Reset doGlue;", "line": "MoveL"}
+    program = find_vendor("abb").read(text.format(**words, speed="v200"), "Glue.mod")
+    ((output, first, last),) = paths(program)
+    assert (first, last) == (2, 4)
+    process = dict.fromkeys(range(first, last + 1), output)
+    controller = Controller(find_vendor("abb"), find_robot(ROBOT))
+    points = find_points(controller, program, None, {}, (), False, process)
+    assert [points.move[corner] for corner in points.growths] == [6, 7]
