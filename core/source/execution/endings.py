@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Generic
 
+from ...door import spelt
 from ...errors import Span
 from ...program.cycle import Cycle
 from .analysis import Analysis
@@ -237,7 +238,8 @@ class Endings(Generic[Block]):
         host.note_once(
             f"polls {loop.span.file}:{loop.span.start}",
             f"the loop ({loop.words}) moves the robot only if others (another task, a computer, an "
-            f"operator) write {', '.join(left)}: what they write is not known",
+            f"operator) write {', '.join(left)}: what they write is not known; say it in a file "
+            f"({spelt('answers')}): [values], or [sequences] with [passes] for one after the other",
             loop.span,
         )
         passes.count = 0

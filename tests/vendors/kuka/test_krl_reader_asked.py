@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+from math import degrees
 from pathlib import Path
 
 import pytest
@@ -9,6 +12,7 @@ import pytest
 from flyby.core.driving.past_faults import drive
 from flyby.core.errors import SourceError
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.move import Move
 from flyby.core.program.program import Program
 from flyby.core.program.target import PoseTarget
 from flyby.core.registry import find_robot, find_vendor
@@ -24,7 +28,7 @@ def read(body: str, folder: Path, values: str = "") -> Program:
     answers = folder / "answers.toml"
     answers.write_text(f"[values]\n{values}\n", "utf-8")
     told = load_answers(answers)
-    open_ended = Answers(values=told.values, goes_on=True, file=told.file)
+    open_ended = replace(told, goes_on=True)
     return VENDOR.read(f"DEF m()\n{body}END\n", "m.src", robot=KR30, answers=open_ended)
 
 
@@ -319,3 +323,26 @@ def test_what_ethernet_calls_return_is_asked_as_a_status_that_is_well(tmp_path: 
     well = "'EKI_Open(\"cam\")' = { MSG_NO = 0 }"
     assert len(read(body, tmp_path, well).moves) == 2
     assert len(read(body, tmp_path, well.replace("0", "7")).moves) == 3
+
+
+def test_a_menu_in_a_structure_that_a_computer_writes_is_asked_for_and_answered(
+    tmp_path: Path,
+) -> None:
+    body = (
+        "pc.job=0\npc.dx=0.0\n"
+        + START
+        + "LOOP\nSWITCH pc.job\nCASE 4\nPTP {A1 5}\npc.job=0\nCASE 7\nPTP {A1 9}\npc.job=0\n"
+        + "ENDSWITCH\nENDLOOP\n"
+    )
+    program = read(body, tmp_path)
+    assert len(program.moves) == 2
+    assert "moves the robot only if others" in said(program) and "PC.JOB" in said(program).upper()
+    (question,) = (q for q in program.questions if q.key.lower() == "pc.job")
+    assert question.type == "whole number"
+    assert turns(read(body, tmp_path, '"pc.job" = 7').moves) == [0, 9]
+    menu = '[sequences]\n"pc.job" = [7, 4, 9, 7]\n[passes]\n"m.src:5" = 4'
+    assert turns(read(body, tmp_path, menu).moves) == [0, 9, 5, 9]
+
+
+def turns(moves: Sequence[Move]) -> list[float]:
+    return [round(degrees(move.target.joints[0])) for move in moves]  # type: ignore[union-attr]

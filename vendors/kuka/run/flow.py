@@ -131,8 +131,8 @@ class Flow:
         if unknown is not None:
             first = next((c.values[0] for c in statement.cases if c.values), None)
             if isinstance(first, Constant | Number):
-                case = self._evaluator.evaluate(first, scope)
-                self._evaluator.used("==", statement.subject, subject, case)
+                shown = self._evaluator.evaluate(first, scope)
+                self._evaluator.used("==", statement.subject, subject, shown)
             bodies = [case.body for case in statement.cases]
             may = [*possible, True]
             self._choose(statement.subject.span, unknown, bodies, statement.otherwise, scope, may)

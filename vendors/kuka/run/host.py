@@ -18,7 +18,7 @@ from ..values.data import Data
 from ..values.elements import Names
 from ..values.predefined import MOTION, NEVER_KNOWN
 from ..values.scope import Scope
-from ..values.values import Choice, Unknown
+from ..values.values import Choice, Struct, Unknown, Value
 from .exits import Finished
 
 
@@ -94,10 +94,8 @@ class KrlHost:
                 continue
             with suppress(SourceError):
                 value = self._names.settled(cell)
-                if isinstance(value, bool | int | float | str | Choice):
-                    reason = f"the value of {cell.name}, which others write"
-                    cell.value = Unknown(reason, span, held=value)
-                    left.append(cell.name)
+                cell.value, parts = _written(value, cell.name, span)
+                left += parts
         return left
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
@@ -112,3 +110,19 @@ class KrlHost:
         """End the program here, with a note."""
         self._transcript.notes.once("end", message, span)
         raise Finished
+
+
+def _written(value: Value | None, name: str, span: Span) -> tuple[Value | None, list[str]]:
+    """A datum as others may have written it, and the names of its parts of which that holds."""
+    if isinstance(value, bool | int | float | str | Choice):
+        reason = f"the value of {name}, which others write"
+        return Unknown(reason, span, held=value, key=name, others=True), [name]
+    if not isinstance(value, Struct):
+        return value, []
+    fields: dict[str, Value] = {}
+    left: list[str] = []
+    for field, part in value.fields.items():
+        made, parts = _written(part, f"{name}.{field.upper()}", span)
+        fields[field] = part if made is None else made
+        left += parts
+    return Struct(value.type, fields, value.label, value.shipped), left

@@ -119,6 +119,8 @@ class Names:
         if cell.signal is not None:
             return self._signal(node, cell, scope)
         path = self.path(node, scope) if node.path else ()
+        if self.course.answers.sequences and self.course.changing(spelled(node.text, path)):
+            return self.answers.undeclared(node, path)
         value = self.settled(cell)
         for step in path:
             if isinstance(value, Unknown):
@@ -133,7 +135,8 @@ class Names:
             open_ = self.answers.undeclared(node, path, f", which {cell.writer} writes")
             return replace(open_, held=value) if isinstance(open_, Unknown) else open_
         if value is None or isinstance(value, Unknown):
-            unset = value is None and position is None
+            open_to_others = isinstance(value, Unknown) and value.others
+            unset = (value is None or open_to_others) and position is None
             kind = QuestionKind.DATUM if unset else None
             answered = self.answers.answer(node, path, kind, cell.type if not path else "")
             if answered is not None:
@@ -330,8 +333,8 @@ class Names:
         if isinstance(expression, Name) and isinstance(value, Unknown) and value.key:
             self.course.used_as(value.key, *EXPECTED["index"])
         last = supposed(value) if isinstance(value, Unknown) else None
-        possible = isinstance(last, int) and last >= 1
-        if isinstance(value, Unknown) and possible and self.course.answers.goes_on:
+        possible = isinstance(last, int) and last >= 1 and self.course.answers.goes_on
+        if isinstance(value, Unknown) and isinstance(last, int) and possible:
             message = f"an index depends on {value.reason}: {last}, which it was last, is taken"
             self.course.decided(expression.span, message)
             return int(last)

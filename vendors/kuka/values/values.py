@@ -173,6 +173,7 @@ class Unknown:
             with zero in its place; None if there is no such value.
         key: under which the user may answer it.
         damaged: a line that is no statement would have set it: motion takes it for nothing.
+        others: others may have written it since: it is asked for.
     """
 
     reason: str
@@ -181,6 +182,7 @@ class Unknown:
     held: Value | None = None
     key: str = ""
     damaged: bool = False
+    others: bool = False
 
     @property
     def answerable(self) -> str:
