@@ -13,6 +13,15 @@ from ...program.question import QuestionKind
 _MOST = 4
 """Names that a message lists."""
 
+_DATA = (
+    QuestionKind.SIGNAL,
+    QuestionKind.OPERATOR,
+    QuestionKind.CHANNEL,
+    QuestionKind.SENSOR,
+    QuestionKind.DATUM,
+)
+"""What targets are made of."""
+
 
 def no_move(program: Program) -> MotionError:
     """The error of a program of which no move is reached: why, and what helps."""
@@ -54,6 +63,13 @@ def goes_nowhere(program: Program) -> MotionError:
     """The error of a program of which every move ends where the robot stands, and what helps."""
     ways = _open_ways(program)
     helps = [f"let it begin elsewhere ({spelt('start')})"]
+    data = dict.fromkeys(q.key for q in program.questions if q.kind in _DATA and not q.answered)
+    if data:
+        helps.insert(
+            0,
+            f"its targets may depend on {_named(list(data))}, which nobody says: say it in a file "
+            f"({spelt('answers')}; `flyby ask` writes one)",
+        )
     if ways:
         helps.append(
             f"say which way it goes in line {_named(ways)} in a file ({spelt('answers')}; "

@@ -7,9 +7,12 @@ import re
 import pytest
 
 import flyby
-from flyby.core.errors import LeftOpenError, SourceError
+from flyby.core.driving.past_faults import drive
+from flyby.core.errors import LeftOpenError, MotionError, SourceError
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
+from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.ur.language import UrScript
@@ -161,3 +164,15 @@ def test_the_examples_of_all_questions_are_answers(tmp_path) -> None:
     answers.write_text(re.sub(r"(?m)^#(?=[\"\w])", "", asked))
     again = flyby.ask(file, robot="ur/ur5e", answers=answers)
     assert all(q.answered for q in again if q.table == "values")
+
+
+def test_a_program_that_goes_nowhere_names_the_data_of_its_targets() -> None:
+    text = (
+        f"{HOME}off = socket_read_ascii_float(3)\nhere = get_actual_tcp_pose()\n"
+        "movel(pose_trans(here, p[off[1], off[2], off[3], 0, 0, 0]), a=0.5, v=0.1)\n"
+    )
+    robot = find_robot("ur/ur5e")
+    going = Answers(goes_on=True)
+    program = find_vendor("ur").read(text, "t.script", robot=robot, answers=going)
+    with pytest.raises(MotionError, match=r"targets may depend on socket_read_ascii_float\(3\)"):
+        drive(Controller(find_vendor("ur"), robot), program)
