@@ -4,8 +4,8 @@
 
 Runs of the real IRB 6640-180/2.55 are emulated as its type is driven (the shipped motion model),
 then with figures that were fitted to the other kinds of runs: lags of all joints
-(``elasticity.lag_s``), friction of joints 2 and 3, transients and drag of joints 1 to 3
-(``servo``), and several of them. They are fitted to the joints' path, time aside, by linear least
+(``elasticity.lag_s``), friction of joints 2 and 3, drag of joints 1 to 3 (``servo``), and several
+of them. They are fitted to the joints' path, time aside, by linear least
 squares with the weights of `flyby identify`, to runs whose times the emulation holds; the way and
 the time of friction are those of nine pairs that leave the others the least. A kind are the runs of
 like speeds (``by speed``), or of one program (``by program``). Cases are the kinds of speed;
@@ -30,7 +30,7 @@ from scipy.ndimage import median_filter
 
 from flyby.core.arrays import FloatArray
 from flyby.core.motion.command.commanded_motion import stamped_motion
-from flyby.core.motion.command.servo import friction_at, transient_at
+from flyby.core.motion.command.servo import offsets_at
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.servo import Servo
 from flyby.core.registry import find_robot, find_vendor
@@ -49,8 +49,6 @@ RUBBED = (1, 2)
 """Joints, counted from zero, that turn back in runs of more than one kind."""
 GIVING = (0, 1, 2)
 """Joints, counted from zero, that carry the arm."""
-BACK = 0.15
-"""s that a servo takes to make up for a torque."""
 IN_TIME = np.radians(1.0)
 """By how much joints may be off at their time in runs that figures are fitted to."""
 WAYS = tuple(product((1e-4, 2e-4, 5e-4), (0.3, 0.6, 1.0)))
@@ -66,13 +64,12 @@ SLOWEST = 0.02
 """Share of the greatest speed below which a sample tells no direction."""
 ERRORS = ("path_max", "path_p99", "path_rms", "joint_path_rms")
 SETS = {
-    "lag": (True, False, False, False),
-    "friction": (False, True, False, False),
-    "both": (True, True, False, False),
-    "without drag": (True, True, True, False),
-    "all": (True, True, True, True),
+    "lag": (True, False, False),
+    "friction": (False, True, False),
+    "without drag": (True, True, False),
+    "all": (True, True, True),
 }
-"""Which figures there are: lags, friction, transients, drag."""
+"""Which figures there are: lags, friction, drag."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +78,6 @@ class Regression:
 
     values: FloatArray
     lag: FloatArray
-    transient: FloatArray
     drag: FloatArray
     friction: dict[tuple[float, float], FloatArray]
 
@@ -145,15 +141,13 @@ def regression(name: str) -> Regression:
     friction = {}
     for rise, fade in WAYS:
         servo = Servo((UNIT,) * ROBOT.size, rise=rise, fade=fade)
-        rubbed = friction_at(servo, smoothing, stamped, coarse, states)
+        rubbed = offsets_at(servo, smoothing, stamped, coarse, states)
         friction[rise, fade] = columns(then(rubbed, coarse), RUBBED)
-    giving = Servo(transient=(UNIT,) * ROBOT.size, transient_time=BACK)
-    given = then(transient_at(giving, smoothing, stamped, coarse, states)[0], coarse)
     dragged = Servo(drag=(UNIT,) * ROBOT.size)
-    drag = then(friction_at(dragged, smoothing, stamped, coarse, states), coarse)
+    drag = then(offsets_at(dragged, smoothing, stamped, coarse, states), coarse)
     off = median_filter(found.alignment.off, (MEDIAN, 1), mode="nearest")
     lag = columns(UNIT * speed, range(ROBOT.size))
-    return Regression(aside(off), lag, columns(given, GIVING), columns(drag, GIVING), friction)
+    return Regression(aside(off), lag, columns(drag, GIVING), friction)
 
 
 @cache
@@ -162,35 +156,27 @@ def in_time(name: str) -> bool:
     return emulated(name, TYPE).figures.joint_time_p99 < IN_TIME
 
 
-def fitted(names: Sequence[str], lags: bool, rubs: bool, gives: bool, drags: bool) -> MotionModel:
+def fitted(names: Sequence[str], lags: bool, rubs: bool, drags: bool) -> MotionModel:
     """The motion model with figures that are fitted to runs."""
     rows = [regression(name) for name in names if in_time(name)]
     best = np.inf, TYPE
     for ways in WAYS if rubs else WAYS[:1]:
         parts = [
-            np.hstack(
-                [r.lag] * lags
-                + [r.friction[ways]] * rubs
-                + [r.transient] * gives
-                + [r.drag] * drags
-            )
-            for r in rows
+            np.hstack([r.lag] * lags + [r.friction[ways]] * rubs + [r.drag] * drags) for r in rows
         ]
         found, loss = robust(np.vstack(parts), rows)
         lag, rest = np.split(found, [ROBOT.size * lags])
-        friction, transient, drag = (np.zeros(ROBOT.size) for _ in range(3))
-        held, given, dragged = np.split(rest, np.cumsum([len(RUBBED) * rubs, len(GIVING) * gives]))
+        friction, drag = (np.zeros(ROBOT.size) for _ in range(2))
+        held, dragged = np.split(rest, [len(RUBBED) * rubs])
         friction[list(RUBBED)[: len(held)]] = held
-        transient[list(GIVING)[: len(given)]] = given
         drag[list(GIVING)[: len(dragged)]] = dragged
         model = TYPE
         if lags:
             shifts = tuple(map(float, UNIT * (lag - lag.mean())))
             model = replace(model, elasticity=replace(model.elasticity, lag=shifts))
-        if rubs or gives or drags:
-            made = (tuple(map(float, UNIT * one)) for one in (friction, drag, transient))
-            rub, pull, give = made
-            servo = Servo(rub, *ways, drag=pull, transient=give, transient_time=BACK)
+        if rubs or drags:
+            rub, pull = (tuple(map(float, UNIT * one)) for one in (friction, drag))
+            servo = Servo(rub, *ways, drag=pull)
             model = replace(model, servo=servo)
         best = min(best, (loss, model), key=lambda pair: pair[0])
     return best[1]
@@ -233,14 +219,13 @@ def measure(case: str) -> Iterator[Figure]:
             told = {
                 "lag": model.elasticity.lag,
                 "friction": servo.friction,
-                "transient": servo.transient,
                 "drag": servo.drag,
             }
             for key, values in told.items():
                 for joint, value in enumerate(values):
                     if value:
                         yield Figure(case, f"{figures}: {key} {joint + 1}", 1e3 * value, "1e-3")
-            if model.servo.rubs:
+            if any(model.servo.friction):
                 yield Figure(case, f"{figures}: rise", 1e3 * model.servo.rise, "1e-3")
                 yield Figure(case, f"{figures}: fade", model.servo.fade, "s")
         return

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from ..core.errors import FlybyError, InputError
+from ..core.motion.command.servo import time_to_rest
 from ..core.motion.emulator.controller import Controller
 from ..core.motion.emulator.run import Run
 from ..core.motion.model.rules import ArcTurn
@@ -166,7 +167,8 @@ def _predict(
     robot = controller.robot
     try:
         check_limits(robot, log.q)
-        driven = controller.run(program, start_of(program, log, robot), period, override)
+        rest = time_to_rest(controller.model.servo)
+        driven = controller.run(program, start_of(program, log, robot), period, override, rest)
         aligned = align(robot, driven.trajectory, log)
         torn = find_torn(driven.trajectory, aligned)
         if torn is None:

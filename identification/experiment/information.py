@@ -25,7 +25,7 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
-from ...core.motion.command.servo import friction_at
+from ...core.motion.command.servo import offsets_at
 from ...core.motion.command.smoothing import States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.model.blend import Blend
@@ -214,7 +214,7 @@ class Informer:
         t = np.arange(0.0, timing.duration, self.period)
         q, dq, ddq = states = _commanded(controller, program, path, timing, t)
         base = path, timing, states
-        rubbed = _rubbed(controller, program, *base, t)
+        rubbed = _off_command(controller, program, *base, t)
         columns = [
             (self._shifted(figure, program, base, start, t) - q - rubbed).ravel() / _STEP
             if figure.shows_in(program)
@@ -248,7 +248,7 @@ class Informer:
         if stage in (Stage.PATH, Stage.TIMING):
             timing = controller.stamp(program, path)
             states = _commanded(controller, program, path, timing, t)
-        return states[0] + _rubbed(controller, program, path, timing, states, t)
+        return states[0] + _off_command(controller, program, path, timing, states, t)
 
     def precision(self, information: FloatArray) -> tuple[Precision, ...]:
         """What is known of each figure after runs with this information, (K, K)."""
@@ -271,7 +271,7 @@ def _commanded(
     return controller.smoothing(program, path).command(stamped_motion(timing), t)
 
 
-def _rubbed(
+def _off_command(
     controller: Controller,
     program: Program,
     path: Path,
@@ -279,11 +279,9 @@ def _rubbed(
     states: States,
     t: FloatArray,
 ) -> FloatArray:
-    """(T, N), how far friction sets the joints off."""
-    if not controller.model.servo.rubs:
-        return np.zeros_like(states[0])
+    """(T, N), how far servos let the joints be off."""
     smoothing = controller.smoothing(program, path)
-    return friction_at(controller.model.servo, smoothing, stamped_motion(timing), t, states)
+    return offsets_at(controller.model.servo, smoothing, stamped_motion(timing), t, states)
 
 
 def _information(S: FloatArray, clock: FloatArray) -> FloatArray:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...core.arrays import FloatArray
 from ...core.motion.command.commanded_motion import stamped_motion
 from ...core.motion.command.elasticity import leads_at
-from ...core.motion.command.servo import friction_at, transient_at
+from ...core.motion.command.servo import offsets_at
 from ...core.motion.command.smoothing import JointMotion, Smoothing, States
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.geometry.pieces import Sampling
@@ -293,8 +293,7 @@ def led(
 ) -> FloatArray:
     """The same where the smoothed motion has states then (K, N)."""
     servo = controller.model.servo
-    q = states[0] + friction_at(servo, smoothing, stamped, t, states)
-    q += transient_at(servo, smoothing, stamped, t, states)[0]
+    q = states[0] + offsets_at(servo, smoothing, stamped, t, states)
     if controller.model.elasticity == RIGID:
         return q
     elasticity, robot = controller.model.elasticity, controller.robot

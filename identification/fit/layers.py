@@ -2,10 +2,10 @@
 
 What was fitted before for a type (blends, limits, elasticity) is its controller's and its arm's,
 and robots of the type share it. One real robot differs from it by its servos: lags of the joints,
-friction where they turn back, drag where they run fast, transients where their velocities change,
-and how long it takes to come to rest. A few runs show these few, all linear but the last, far
-better than two dozen figures that hold them already. So both are fitted, each as runs held back ask
-for, and those runs choose. A virtual controller has no servos.
+friction where they turn back, drag where they run fast, and how long it takes to come to rest. A
+few runs show these few, all linear but the last, far better than two dozen figures that hold them
+already. So both are fitted, each as runs held back ask for, and those runs choose. A virtual
+controller has no servos.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .minimum import Watch
 from .parameters import ParameterSet, usual_parameters
 from .runs import PreparedRun
 
-SERVO_LISTS = ("servo.friction_rad", "servo.drag_s", "servo.transient_s", "elasticity.lag_s")
+SERVO_LISTS = ("servo.friction_rad", "servo.drag_s", "elasticity.lag_s")
 """Figures that each joint's servo has; zero where a model states none."""
 SETTLING = "time.settling_s"
 

@@ -15,7 +15,6 @@ accelerations, are low.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -24,7 +23,7 @@ import numpy as np
 from numba import njit
 
 from ...arrays import FloatArray, IntArray
-from ...motion.command.servo import drag_bound, friction_bound
+from ...motion.command.servo import drag_bound, friction_bound, time_to_rest
 from ...motion.command.smoothing import Smoothing
 from ...motion.emulator.controller import Controller
 from ...motion.emulator.run import Run
@@ -32,7 +31,6 @@ from ...motion.model.point_masses import filled
 from ...motion.model.servo import Servo
 from ...motion.path.path import Path
 from ...motion.timing.timing import Timing
-from ...robot.model import Robot
 from .averaging import Averages, Rates, near
 from .earliest_times import EarliestTimes
 from .speed_bounds import Allowed, greatest
@@ -48,9 +46,6 @@ _STEP = 2e-3
 """s of a cell where there are no averages."""
 _SPEEDS, _TIME = 0.1, 0.7
 """Shares of speeds and of the rate of time below which motions are slow."""
-_PASSED = 4.0
-"""Times that drag takes to come up within which it is looked at where joints were that fast; before
-that, they are taken to have been at their limits."""
 _COARSER = 3.0
 """How much longer cells are of motions that are slow."""
 
@@ -202,10 +197,7 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
     reach = smoothing.window + timing.ramp
     step = band.coarser * (reach / _CELLS if reach > 0.0 else _STEP)
     servo = model.servo
-    away = max(reach, step) + max(
-        servo.transient_time if servo.gives else 0.0,
-        _PASSED * servo.drag_time if any(servo.drag) else 0.0,
-    )
+    away = max(reach, step) + time_to_rest(servo)
     first, last = _with_what_counts(timing, band.most, first, last, _ASIDE * away)
     allowed = Allowed.of(timing, band.most, first, last)
     course = EarliestTimes.of(timing, allowed, band.rests, step, away)
@@ -215,10 +207,9 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
     averages = Averages(course, smoothing, timing.ramp)
     offsets = averages.offsets()
     ways, share, rest = offsets.axis[:, None], offsets.along[:, None], offsets.aside
-    if any(lag) or servo.gives or any(servo.drag):
+    if any(lag) or any(servo.drag):
         rates, late = averages.rates(), filled(lag, size)
-        rest += _transients(servo, course, rates)
-        rest += _drag(servo, course, rates, _fastest(known.controller.robot))
+        rest += _drag(servo, course, rates)
         speed = np.stack([np.zeros_like(rates.speed), rates.speed], -1)
         ways = np.concatenate([ways, (late * course.tangent)[:, None]], axis=1)
         share = np.concatenate([share, speed[:, None]], axis=1)
@@ -234,33 +225,15 @@ def _within(known: Deviation, band: _Band, first: int, last: int) -> DeviationBo
     return DeviationBounds(edge, ways[moves], share[moves], rest[moves], most[moves])
 
 
-def _transients(servo: Servo, course: EarliestTimes, rates: Rates) -> FloatArray:
-    """(C, N), bounds of what joints are off by where their velocities change: those of a velocity,
-    and of its mean over what was passed in a while."""
-    per = np.abs(filled(servo.transient, rates.veer.shape[1]))
-    found = np.zeros_like(rates.veer)
-    for j in np.flatnonzero(per):
-        fastest = np.abs(course.tangent[:, j]) * rates.speed + rates.veer[:, j]
-        found[:, j] = per[j] * (fastest + near(course, fastest, servo.transient_time))
-    return found
-
-
-def _drag(servo: Servo, course: EarliestTimes, rates: Rates, limits: FloatArray) -> FloatArray:
-    """(C, N), bounds of what drag sets joints off by: that of the greatest velocity of a while, and
-    of what is left of joints (N,) at their limits before."""
+def _drag(servo: Servo, course: EarliestTimes, rates: Rates) -> FloatArray:
+    """(C, N), bounds of what drag sets joints off by: that of the greatest velocity of a while."""
     found = np.zeros_like(rates.veer)
     if not any(servo.drag):
         return found
     for j in range(found.shape[1]):
         fastest = np.abs(course.tangent[:, j]) * rates.speed + rates.veer[:, j]
-        found[:, j] = near(course, fastest, _PASSED * servo.drag_time)
-    return drag_bound(servo, found) + math.exp(-_PASSED) * drag_bound(servo, limits)
-
-
-def _fastest(robot: Robot) -> FloatArray:
-    """(N,) rad/s or m/s, limits of joints and external axes."""
-    joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
-    return np.array([joint.velocity for joint in joints])
+        found[:, j] = near(course, fastest, servo.drag_delay)
+    return drag_bound(servo, found)
 
 
 def _with_what_counts(

@@ -18,9 +18,9 @@ from ...robot.model import Robot
 from ..model.elasticity import RIGID
 from ..model.motion_model import MotionModel
 from ..timing.timing import Timing
-from .elasticity import derivatives_of, lead_states_at, lead_step, links_of
+from .elasticity import lead_states_at, lead_step, links_of
 from .ramp import ramped
-from .servo import FrictionMemory, transient_at
+from .servo import FrictionMemory, drag_at, drag_reach
 from .smoothing import STEP, JointMotion, Smoothing, States, even_times, knot_step
 from .trajectory import Leads, no_leads, sample_times
 
@@ -62,17 +62,17 @@ def commanded_motion(
     elasticity = model.elasticity
     lead = None if elasticity == RIGID else no_leads(shape)
     servo = model.servo
-    friction = FrictionMemory(servo, smoothing, shape[1]) if servo.rubs else None
-    back = servo.transient_time if servo.gives else 0.0
-    needs_jerk = servo.gives or any(elasticity.lag)
+    friction = FrictionMemory(servo, smoothing, shape[1]) if any(servo.friction) else None
+    needs_jerk = any(elasticity.lag)
     step = lead_step(smoothing.window + timing.ramp)
+    last = max(timing.duration, float(t[-1]))
     for part in stretches(t):
         sigma[part] = timing.place_at(np.clip(t[part] - timing.lag, 0.0, timing.duration))
         if smoothing.window == 0.0 and timing.ramp == 0.0 and lead is None and servo.still:
             timing.driven_at(t[part], (q[part], dq[part], ddq[part]))
             continue
         begin, end = t[part][0] - _ASIDE * step, t[part][-1] + _ASIDE * step
-        first = min(begin, t[part][0] - back)
+        first = min(begin, t[part][0] - drag_reach(servo))
         if friction is not None:
             first = min(first, friction.known_to)
         # What `lead_states_at` averages may begin two steps before.
@@ -82,18 +82,18 @@ def commanded_motion(
             smooth = np.empty_like(q[part]), np.empty_like(q[part]), np.empty_like(q[part])
         left = 0
         if lead is not None or needs_jerk:
-            even = even_times(max(begin, 0.0), min(end, timing.duration), step)
+            even = even_times(max(begin, 0.0), min(end, last), step)
             known = smoothing.command(stamped, even)
             left = _taken_over(even, known, t[part], smooth)
         if left < len(smooth[0]):
             rest = (smooth[0][left:], smooth[1][left:], smooth[2][left:])
             smoothing.command(stamped, t[part][left:], rest)
         offs = [] if friction is None else [friction.over(stamped, t[part], smooth)]
+        if any(servo.drag):
+            offs.append(drag_at(servo, smoothing, stamped, t[part]))
         if needs_jerk:
-            jerk = derivatives_of(even, known[2], t[part])[1]
+            jerk = JointMotion.through(even, known[2]).at(t[part])[1]
             q[part], dq[part], ddq[part] = links_of(elasticity, smooth, jerk)
-            if servo.gives:
-                offs.append(transient_at(servo, smoothing, stamped, t[part], smooth, jerk))
         if lead is not None:
             led = lead_states_at(elasticity, robot, smoothing, stamped, even, known, t[part])
             for made, of in zip(lead, led, strict=True):

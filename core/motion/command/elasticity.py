@@ -111,7 +111,7 @@ def averaged_slack(
     states = before.command(stamped, t)
     added = leads(elasticity, robot, *states)
     added -= leads(replace(elasticity, slack=()), robot, *states)
-    return _spline(t, added).averaged(longest, at)
+    return JointMotion.through(t, added).averaged(longest, at)
 
 
 def _averages_slack(elasticity: Elasticity, smoothing: Smoothing) -> bool:
@@ -159,8 +159,8 @@ def lead_states(
     """
     given, used = _gears(elasticity, robot, *states)
     size = given.shape[1]
-    stiff, slack = _spline(t, given), filled(elasticity.slack, size)
-    held = _spline(t, used) if slack.any() else stiff
+    stiff, slack = JointMotion.through(t, given), filled(elasticity.slack, size)
+    held = JointMotion.through(t, used) if slack.any() else stiff
     shape = len(at), size
     lead, change, bend = np.empty(shape), np.empty(shape), np.empty(shape)
     mixed = mixture(elasticity, robot, size)
@@ -221,28 +221,6 @@ def mixture(elasticity: Elasticity, robot: Robot, size: int) -> FloatArray:
     return out
 
 
-def derivatives_of(
-    t: FloatArray, values: FloatArray, at: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Values (T, N) and two derivatives, at rest outside, of the cubic spline through even samples.
-
-    Args:
-        t: (S,) s, even.
-        values: (S, N).
-        at: (T,) s, not decreasing.
-    """
-    return _spline(t, values).at(at)
-
-
-def _spline(t: FloatArray, values: FloatArray) -> JointMotion:
-    """The cubic spline through values (S, N) at even times (S,), at rest outside."""
-    values = np.ascontiguousarray(values)
-    slopes = np.zeros_like(values)
-    if len(t) > 2:
-        _fill_slopes(values, float(t[1] - t[0]), slopes, np.zeros(len(values)))
-    return JointMotion(t, values, slopes)
-
-
 @lean
 def _fill_leads(
     t: FloatArray,
@@ -294,20 +272,3 @@ def _loose(slack: float, lead: float, change: float, bend: float) -> tuple[float
         slope * change,
         slope * bend - 2.0 * bent * slope / slack * change * change,
     )
-
-
-@lean
-def _fill_slopes(values: FloatArray, step: float, slopes: FloatArray, pivot: FloatArray) -> None:
-    """Slopes (T, N) of the cubic spline through values a step apart, at rest at its ends.
-
-    Its second derivative is continuous where m₋ + 4 m + m₊ = 3 (v₊ − v₋) / step.
-    """
-    last = values.shape[0] - 1
-    for i in range(1, last):
-        pivot[i] = 1.0 / (4.0 - pivot[i - 1])
-        for j in range(values.shape[1]):
-            rise = 3.0 * (values[i + 1, j] - values[i - 1, j]) / step
-            slopes[i, j] = (rise - slopes[i - 1, j]) * pivot[i]
-    for i in range(last - 1, 0, -1):
-        for j in range(values.shape[1]):
-            slopes[i, j] -= pivot[i] * slopes[i + 1, j]

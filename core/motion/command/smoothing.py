@@ -81,6 +81,15 @@ class JointMotion:
         default_factory=dict, repr=False, compare=False
     )
 
+    @classmethod
+    def through(cls, t: FloatArray, values: FloatArray) -> JointMotion:
+        """The cubic spline through values (S, N) at even times (S,) in s."""
+        values = np.ascontiguousarray(values)
+        slopes = np.zeros_like(values)
+        if len(t) > 2:
+            _fill_slopes(values, float(t[1] - t[0]), slopes, np.zeros(len(values)))
+        return cls(t, values, slopes)
+
     @cached_property
     def areas(self) -> FloatArray:
         """(S, N), ∫ (q − q₀) dt from the first knot."""
@@ -397,3 +406,20 @@ def _fill_means(
     for n in range(position.size):
         step = w.area * (end[n] - begin[n]) + w.b0 * begin_slope[n] + w.b1 * end_slope[n]
         position[n] += rate * (area[n] - begin_area[n] - since * begin[n] - step)
+
+
+@lean
+def _fill_slopes(values: FloatArray, step: float, slopes: FloatArray, pivot: FloatArray) -> None:
+    """Slopes (T, N) of the cubic spline through values a step apart, at rest at its ends.
+
+    Its second derivative is continuous where m₋ + 4 m + m₊ = 3 (v₊ − v₋) / step.
+    """
+    last = values.shape[0] - 1
+    for i in range(1, last):
+        pivot[i] = 1.0 / (4.0 - pivot[i - 1])
+        for j in range(values.shape[1]):
+            rise = 3.0 * (values[i + 1, j] - values[i - 1, j]) / step
+            slopes[i, j] = (rise - slopes[i - 1, j]) * pivot[i]
+    for i in range(last - 1, 0, -1):
+        for j in range(values.shape[1]):
+            slopes[i, j] -= pivot[i] * slopes[i + 1, j]

@@ -100,6 +100,7 @@ class Controller:
         start: JointTarget | None = None,
         period: float | None = None,
         override: float = 1.0,
+        beyond: float = 0.0,
     ) -> Run:
         """Plan, stamp and sample a program.
 
@@ -108,6 +109,7 @@ class Controller:
             start: where the robot stands; None for the program's own start, else its first target.
             period: s between samples; None for the controller's own.
             override: share of all speeds, as an operator sets it; see `stamp_slower`.
+            beyond: s after the end of what is commanded that the trajectory has as well.
 
         Raises:
             MotionError: the program cannot be driven; the message names the move.
@@ -116,7 +118,7 @@ class Controller:
         timing = self.stamp(program, path)
         if override != 1.0:
             timing = self.stamp_slower(program, timing, override)
-        trajectory = self.sample(program, timing, period)
+        trajectory = self.sample(program, timing, period, beyond)
         notes = (
             *program.notes,
             *path.notes,
@@ -277,11 +279,24 @@ class Controller:
             return None
         return torque_shares(self.model.torque, self.robot, *along.states[:3])
 
-    def sample(self, program: Program, timing: Timing, period: float | None = None) -> Trajectory:
-        """The motion of links and motors, smoothed in time where the vendor does, each period."""
+    def sample(
+        self,
+        program: Program,
+        timing: Timing,
+        period: float | None = None,
+        beyond: float = 0.0,
+    ) -> Trajectory:
+        """The motion of links and motors, smoothed in time where the vendor does, each period.
+
+        Args:
+            program: that was stamped.
+            timing: of its path.
+            period: s between samples; None for the controller's own.
+            beyond: s after the end of what is commanded: servos come to rest later.
+        """
         period = self.model.period if period is None else period
         smoothing = self.smoothing(program, timing.path)
-        t = sample_times(0.0, timing.duration, period)
+        t = sample_times(0.0, timing.duration + beyond, period)
         found = commanded_motion(self.robot, self.model, smoothing, timing, t)
         path = timing.path
         last = len(path.route.moves) - 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .figures import FitRange, Stage, check_figures, figure
-from .kinds import FINITE, POSITIVE, RealNumber, Row
+from .kinds import FINITE, NOT_NEGATIVE, POSITIVE, RealNumber, Row
 
 _TRAVEL = FitRange(1e-5, 0.1, 1e-3)
 
@@ -62,55 +62,26 @@ class Servo:
         Stage.LEAD,
         "speed at which that is half of what it is per velocity of fast joints",
         unit="rad/s (m/s of a linear axis)",
-        default=0.5,
+        default=0.3,
         fit=FitRange(0.01, 10.0, 0.3),
     )
-    drag_time: float = figure(
-        "drag_time_s",
-        RealNumber(POSITIVE),
+    drag_delay: float = figure(
+        "drag_delay_s",
+        RealNumber(NOT_NEGATIVE),
         Stage.LEAD,
-        "time within which that comes up",
+        "how much later that shows",
         unit="s",
-        default=0.3,
-        fit=FitRange(0.01, 10.0, 0.1),
-    )
-    transient: tuple[float, ...] = figure(
-        "transient_s",
-        Row(FINITE),
-        Stage.LEAD,
-        "how far a joint is ahead where it is faster than it was on average of late, per velocity "
-        "(below zero: behind); joints beyond are not",
-        unit="s",
-        default=(),
-        fit=FitRange(-0.02, 0.02, 1e-3),
-    )
-    transient_time: float = figure(
-        "transient_time_s",
-        RealNumber(POSITIVE),
-        Stage.LEAD,
-        "how far that average goes back: by then the servo has made up for it",
-        unit="s",
-        default=0.15,
-        fit=FitRange(0.01, 1.0, 0.05),
+        default=0.14,
+        fit=FitRange(0.0, 1.0, 0.02),
     )
 
     def __post_init__(self) -> None:
         check_figures(self, "servo.")
 
     @property
-    def rubs(self) -> bool:
-        """Whether friction sets any joint off, or drag."""
-        return any(self.friction) or any(self.drag)
-
-    @property
-    def gives(self) -> bool:
-        """Whether any joint is off where its velocity changes."""
-        return any(self.transient)
-
-    @property
     def still(self) -> bool:
         """Whether no joint is ever off."""
-        return not (self.rubs or self.gives)
+        return not (any(self.friction) or any(self.drag))
 
 
 IDEAL = Servo()

@@ -50,8 +50,7 @@ LOADED = replace(
     spring=(0.0, 3e-3),
 )
 LATE = Elasticity(lag=(1e-3, 0.0, -2e-3))
-GIVING = Servo(transient=(3e-3, -2e-3, 0.0, 1e-3), transient_time=0.1)
-DRAGGED = Servo((1e-4, -1e-4), drag=(-3e-3, 2e-3, 0.0, 1e-3), drag_speed=0.2, drag_time=0.1)
+DRAGGED = Servo((1e-4, -1e-4), drag=(-3e-3, 2e-3, 0.0, 1e-3), drag_speed=0.2, drag_delay=0.1)
 RUBBING = Servo((-2e-3, 3e-3, 0.0, 0.0, 1e-3))
 WEAK = Torque((0.03, 0.05, 0.09), (Borne(5, (0.03, 0.03)),), fade=(0.2, 0.1))
 SPEED = Speed(tcp=2.0, reorientation=6.0)
@@ -83,14 +82,9 @@ MODELS = {
     "friction, lag": MotionModel(
         smoothing=(0.05, 0.05), settling=0.05, elasticity=LATE, servo=RUBBING
     ),
-    "transients": MotionModel(smoothing=(0.04, 0.03), servo=GIVING),
-    "transients, ramp, lag": MotionModel(
-        smoothing=(0.04,), ramp=0.03, elasticity=LATE, servo=GIVING
-    ),
     "drag": MotionModel(smoothing=(0.04, 0.03), servo=DRAGGED),
-    "drag, transients, unsmoothed": MotionModel(
-        servo=replace(DRAGGED, transient=GIVING.transient, transient_time=0.1)
-    ),
+    "drag, ramp, lag": MotionModel(smoothing=(0.04,), ramp=0.03, elasticity=LATE, servo=DRAGGED),
+    "drag, unsmoothed": MotionModel(servo=DRAGGED),
     "fitted": ABB.motion_of(ROBOT),
 }
 

@@ -60,7 +60,6 @@ RICH = {
     "elasticity.spring_rad": (1e-4,),
     "servo.friction_rad": (0.0, 1e-3),
     "servo.drag_s": (0.0, 1e-3),
-    "servo.transient_s": (1e-3,),
 }
 """What others need to show."""
 CORNERS = {"blend.tcp.kind": "arc", "zone.pace": "superposed", "limit.centripetal": 1.2}
@@ -119,9 +118,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "servo.friction_fade_s": (0.2, {}),
     "servo.drag_s": ((0.0, 2e-3), {}),
     "servo.drag_speed_radps": (1.0, {}),
-    "servo.drag_time_s": (0.1, {}),
-    "servo.transient_s": ((0.0, 2e-3), {}),
-    "servo.transient_time_s": (0.3, {}),
+    "servo.drag_delay_s": (0.05, {}),
 }
 """Another value of every figure, and what it needs beside it to show."""
 WITHOUT_EFFECT = {"blend.joint.kind", "blend.orientation.kind"}

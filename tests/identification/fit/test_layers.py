@@ -17,7 +17,7 @@ from .known_truth import ROBOT, TRUTH, logged, ready
 KINDS = ((0.03, 0.5), (0.08, 0.2), (0.05, 0.8))
 RUBBING = replace(
     TRUTH,
-    servo=Servo(friction=(0.0, 2e-4, -1.5e-4), transient=(0.0, 1e-3, -8e-4)),
+    servo=Servo(friction=(0.0, 2e-4, -1.5e-4), drag=(0.0, 1e-3, -8e-4)),
     elasticity=replace(TRUTH.elasticity, lag=(0.0, -4e-4, 0.0, 5e-4, 0.0, 0.0)),
 )
 BULGING = replace(TRUTH, tcp=Blend(beta=(-0.9,)), settling=None)
@@ -45,7 +45,7 @@ def test_servos_that_differ_are_found() -> None:
     assert held.fit.after < 0.3 * held.fit.before
     servo = held.fit.model.servo
     assert servo.friction[1] == pytest.approx(2e-4, abs=8e-5)
-    assert servo.transient[1] == pytest.approx(1e-3, abs=4e-4)
+    assert servo.drag[1] == pytest.approx(1e-3, abs=4e-4)
 
 
 def test_a_type_that_differs_is_found() -> None:
@@ -63,7 +63,7 @@ def test_virtual_controllers_have_no_servos() -> None:
 def test_every_joint_has_what_a_servo_has() -> None:
     texts = servo_parameters(TRUTH, ROBOT)
     found = ParameterSet.named(TRUTH, texts)
-    assert found.size == 4 * ROBOT.arm_size + 1 and not found.before[:-1].any()
+    assert found.size == 3 * ROBOT.arm_size + 1 and not found.before[:-1].any()
     assert ParameterSet.named(RUBBING, servo_parameters(RUBBING, ROBOT)).before[1] == 2e-4
     waiting = replace(TRUTH, settling=None)
-    assert len(servo_parameters(waiting, ROBOT)) == 4 * ROBOT.arm_size
+    assert len(servo_parameters(waiting, ROBOT)) == 3 * ROBOT.arm_size

@@ -20,7 +20,7 @@ ONE = load_motion_model(ROOT / "examples" / "irb6640_one_robot.toml", TYPE, ROBO
 
 def test_it_states_figures_of_one_robot_alone() -> None:
     stated = {key for key in ONE.figures if ONE.provenance[key] != TYPE.provenance.get(key)}
-    assert stated >= {"servo.friction_rad", "servo.transient_s", "elasticity.lag_s"}
+    assert stated >= {"servo.friction_rad", "servo.drag_s", "elasticity.lag_s"}
     assert {ONE.provenance[key].status for key in stated} == {"fitted"}
     assert ONE.torque == TYPE.torque
 

@@ -33,12 +33,11 @@ MODELS = {
     "lag": MotionModel(smoothing=(0.05, 0.03), elasticity=Elasticity(lag=(1e-3, 0.0, -2e-3))),
     "friction": MotionModel(servo=Servo((-1e-3, 1e-3, 2e-3))),
     "drag": MotionModel(servo=Servo((1e-3,), drag=(-1e-3, 1e-3, 2e-3))),
-    "transients": MotionModel(smoothing=(0.05,), servo=Servo(transient=(2e-3, -1e-3))),
-    "transients, friction, elastic": MotionModel(
+    "drag, friction, elastic": MotionModel(
         smoothing=(0.04, 0.03),
         ramp=0.03,
         elasticity=GEARS,
-        servo=Servo((-1e-3, 1e-3), transient=(2e-3, 0.0, -1e-3), transient_time=0.4),
+        servo=Servo((-1e-3, 1e-3), drag=(2e-3, 0.0, -1e-3), drag_delay=0.4),
     ),
     "friction, elastic": MotionModel(
         smoothing=(0.04, 0.03), ramp=0.03, elasticity=GEARS, servo=Servo((-1e-3, 1e-3))
