@@ -15,7 +15,7 @@ from ...errors import InputError, SourceError
 from ...program.arc_orientation import ArcOrientation
 from ...program.event import Event
 from ...program.move import Move
-from ...program.target import Target
+from ...program.target import Configuration, Target
 from ...program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...program.zone import FINE, Zone
 from ...spatial.pose import IDENTITY, Pose
@@ -26,7 +26,7 @@ from .forms import FormGrammar, Found
 from .motions import MotionWords
 from .moves import ArcPoints, made_move
 from .positions import PositionForm
-from .program import Said
+from .program import Initial, Said
 from .statements import (
     AssignAll,
     Drive,
@@ -50,51 +50,60 @@ class Placed:
     work_object: WorkObject = WORLD
 
 
-@dataclass(frozen=True)
-class FrameRegisters:
-    """The registers of a language; number 0 is the flange, and the robot's base.
+@dataclass(frozen=True, slots=True)
+class Place:
+    """What a position is beside its numbers, where it says so itself.
 
     Args:
-        form: of their numbers.
+        joints: whether they are joint values.
+        tool, frame: numbers of `FrameRegisters`; None for what is set where it is used.
+        configuration: of a pose.
+    """
+
+    joints: bool = False
+    tool: int | None = None
+    frame: int | None = None
+    configuration: Configuration | None = None
+
+
+@dataclass(frozen=True)
+class FrameRegisters:
+    """The registers of a language; number 0 is the flange, and the robot's base. The program itself
+    may set them.
+
+    Args:
         tool, frame: their words; ``""`` for none.
         beside: the file that states them, to be put beside programs; ``""`` where there is none.
         chosen: words of the settings that hold the numbers of those that a motion names none of.
     """
 
-    form: PositionForm
     tool: str
     frame: str = ""
     beside: str = ""
     chosen: tuple[str, str] = ("", "")
 
-    def both(self, tool: int | None, frame: int | None, now: Situation) -> tuple[Tool, WorkObject]:
-        """The tool and the work object of their numbers; None for the ones that are set."""
-        numbers = (
-            int(now.setting(word, 0.0)) if number is None else number
-            for word, number in zip(self.chosen, (tool, frame), strict=True)
-        )
-        return self.tool_of(next(numbers), now), self.work_object_of(next(numbers), now)
+    def both(self, form: PositionForm, place: Place, now: Situation) -> tuple[Tool, WorkObject]:
+        """The tool and the work object of a place.
 
-    def tool_of(self, number: int, now: Situation) -> Tool:
-        """The tool of a number."""
-        if not number:
-            return FLANGE
-        return Tool(f"{self.tool}[{number}]", self.pose(self.tool, number, now))
-
-    def work_object_of(self, number: int, now: Situation) -> WorkObject:
-        """The work object of a frame's number."""
-        if not number:
-            return WORLD
-        return WorkObject(f"{self.frame}[{number}]", user=self.pose(self.frame, number, now))
-
-    def pose(self, word: str, number: int, now: Situation) -> Pose:
-        """The pose that a register holds.
+        Args:
+            form: of their numbers.
 
         Raises:
-            InputError: nobody knows it.
+            InputError: nobody knows them.
         """
+        tool, frame = (
+            int(now.setting(word, 0.0)) if number is None else number
+            for word, number in zip(self.chosen, (place.tool, place.frame), strict=True)
+        )
+        at, user = self._pose(self.tool, tool, form, now), self._pose(self.frame, frame, form, now)
+        return (
+            Tool(f"{self.tool}[{tool}]", at) if tool else FLANGE,
+            WorkObject(f"{self.frame}[{frame}]", user=user) if frame else WORLD,
+        )
+
+    def _pose(self, word: str, number: int, form: PositionForm, now: Situation) -> Pose:
         try:
-            return self.form.pose(now.vector(word, number))
+            return form.pose(now.vector(word, number)) if number else IDENTITY
         except SourceError:
             offer = f"put {self.beside} beside the program, or " if self.beside else ""
             raise InputError(
@@ -133,6 +142,7 @@ class MotionGrammar(FormGrammar):
         count: numbers of a position.
         current: what stands for the numbers of where the running robot is, in capitals.
         override: word of the register that holds the speed override in %.
+        frames: tools and frames that have numbers.
         tool_word, frame_word: of the tool and the frame that hold until others are set.
     """
 
@@ -145,6 +155,7 @@ class MotionGrammar(FormGrammar):
     count: int = 6
     current: frozenset[str] = frozenset()
     override: str = ""
+    frames: FrameRegisters | None = None
     tool_word: str = ""
     frame_word: str = ""
     helpers: ClassVar[frozenset[str]] = FormGrammar.helpers | {
@@ -167,17 +178,26 @@ class MotionGrammar(FormGrammar):
         super().__init__()
         self._arc: ArcPoints[Operand] = ArcPoints()
         self._before = ""
-        if words := [word for word in (self.tool_word, self.frame_word) if word]:
+        words, held = [word for word in (self.tool_word, self.frame_word) if word], self.frames
+        known = [*words, *([held.tool, held.frame] if held is not None else ())]
+        if known:
             none = Numbers.of(self.form.numbers(IDENTITY))
-            self.vectors = {**self.vectors, **dict.fromkeys(words, len(none))}
-            self.initial = {**{(word, None): none for word in words}, **self.initial}
+            chosen: Initial = {
+                (word, None): 0.0 for word in (held.chosen if held is not None else ())
+            }
+            self.vectors = {**self.vectors, **dict.fromkeys(known, len(none))}
+            self.initial = {**{(word, None): none for word in words}, **chosen, **self.initial}
 
     # ------------------------------------------------------- what a language may say otherwise
 
     def placed(self, numbers: Numbers, now: Situation) -> Placed:
         """Where the numbers of a point are; `numbers.kind` is that of the point."""
-        goal = self.form.target(numbers, numbers.kind in self.joints)
-        return Placed(goal, *self.set_frames(now))
+        kind = numbers.kind
+        place = kind if isinstance(kind, Place) else Place(kind in self.joints)
+        goal = self.form.target(numbers[: self.count], place.joints, place.configuration)
+        if self.frames is None:
+            return Placed(goal, *self.set_frames(now))
+        return Placed(goal, *self.frames.both(self.form, place, now))
 
     def kind_of(self, found: Found) -> object:
         """What a point is beside its numbers."""

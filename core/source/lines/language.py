@@ -32,7 +32,7 @@ from .interpreter import run_lines
 from .motions import MotionWords
 from .moves import said
 from .patcher import patch_lines
-from .program import LineProgram, mostly_said, plain_lines, read_lines
+from .program import LineProgram, mostly_said, pieces, plain_lines, read_lines
 from .statements import Line
 
 
@@ -133,6 +133,8 @@ class LineLanguage:
         longest_name: signs of a program's name at most; 0 for any number.
         capitals: whether it is in capitals.
         longest_comment: signs of a comment at most; 0 for any number.
+        pieces: what of a text is one statement each, in the group ``text``, and what says nothing
+            between them, where that is not its lines.
         called: in a text, names of the programs that it calls, whose files stand beside; None for
             programs in one file.
         always: names of files, in lower case, that are read wherever they stand beside.
@@ -147,6 +149,7 @@ class LineLanguage:
     longest_name: int = 0
     capitals: bool = False
     longest_comment: int = 0
+    pieces: re.Pattern[str] | None = None
     called: re.Pattern[str] | None = None
     always: tuple[str, ...] = ()
 
@@ -154,6 +157,8 @@ class LineLanguage:
 
     def lines(self, source: SourceText) -> Iterable[Line]:
         """What of a text is one statement each."""
+        if self.pieces is not None:
+            return pieces(source, self.pieces)
         return plain_lines(source, self.trailing)
 
     def program(self, text: str, file: str) -> LineProgram:

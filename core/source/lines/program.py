@@ -120,6 +120,27 @@ def plain_lines(source: SourceText, comment: str = "") -> Iterator[Line]:
             yield Line(source, start, start + len(words))
 
 
+def pieces(source: SourceText, pattern: re.Pattern[str]) -> Iterator[Line]:
+    """The statements of a text in which a line is not one: the group ``text`` of what fits.
+
+    Raises:
+        SourceError: something fits nowhere.
+    """
+    at, text = 0, source.text
+    for found in (*pattern.finditer(text), None):
+        left = text[at : found.start() if found else len(text)]
+        if left.strip():
+            start = at + len(left) - len(left.lstrip())
+            words = " ".join(left.split())[:40]
+            raise source.error(
+                f"{words!r} is no statement: what begins or ends one is missing", start
+            )
+        if found is not None:
+            at, words = found.end(), (found["text"] or "").rstrip()
+            if words:
+                yield Line(source, found.start("text"), found.start("text") + len(words))
+
+
 def read_lines(
     text: str,
     file: str,

@@ -3,92 +3,35 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from typing import ClassVar
 
 from flyby.core.errors import InputError
-from flyby.core.source.lines.driving import MotionGrammar, Placed
-from flyby.core.source.lines.expressions import Datum, Number, Spelling, parse
+from flyby.core.program.event import Event
+from flyby.core.program.target import JointTarget
+from flyby.core.source.lines.driving import MotionGrammar, Place, Placed
+from flyby.core.source.lines.expressions import Number, Spelling, parse
 from flyby.core.source.lines.forms import Found
-from flyby.core.source.lines.postures import PostureLabel
+from flyby.core.source.lines.moves import counted_on
 from flyby.core.source.lines.program import Said
-from flyby.core.source.lines.statements import Line, NumberedPoint, Numbers, Situation
-from flyby.core.source.text.files import SourceText
+from flyby.core.source.lines.statements import Line, NumberedPoint, Situation
 
-from .moves import MOTION, OPTION, Place, events, moved
-from .words import FRAMES, XYZ
-from .words import MOTION as MOTION_WORDS
+from .words import COORDINATE, FRAMES, LETTERS, MOTION, MOVED, OPTION, POSITION, XYZ
 
-_SECTION = re.compile(r"^[ \t]*/(PROG|ATTR|APPL|MN|POS|END)\b[^\r\n]*", re.M | re.I)
-_STATEMENT = re.compile(
-    r"^(?P<nested>[ ]{5,}+)?+[ \t]*+\d*+[ \t]*+:[ \t]*+"
-    r"(?:(?P<silent>(?:!|//|--eg)[^\r\n]*+)|(?P<text>[^;\r\n]*+);)",
-    re.MULTILINE,
-)
-_LINE = re.compile(r"[^\r\n]+")
-_IDLE = re.compile(r"\s*(?:---|\*|!|//|--eg|$)")
-_POSITION = re.compile(r"P\[[^\[\]\r\n]*+\]\s*+\{[^{}]*+\}\s*+;")
-_COMMENT = re.compile(r"(\[(?:[^\[\]:\r\n]|\[[^\[\]:]*\])+)(:[^\]\r\n]{0,80}+)(?=\])")
-_SILENT = (re.compile(r"(?<=\[)()GP\d+:|()\r?\n[ \t]+:"), _COMMENT, _COMMENT)
-"""Groups of axes, continued lines, comments in brackets, and in those of their indices."""
-_GROUP = re.compile(r"GP1\s*:(?P<body>.*?)(?=GP\d|\}|$)", re.DOTALL | re.IGNORECASE)
-_IN_FRAMES = re.compile(r"UF\s*:\s*(\w+)\s*,\s*UT\s*:\s*(\w+)", re.IGNORECASE)
-_CONFIG = re.compile(r"CONFIG\s*:\s*'([NF])\s*([LR]\s+)?([UD])\s*([TB])\s*,([^']*)'", re.IGNORECASE)
-_COORDINATE = re.compile(r"\b([XYZWPRE]|J\d|E\d)\s*=\s*(-?\s*[\d.]+)\s*(mm|deg)", re.IGNORECASE)
-_WHOLE = ("PR", "UFRAME", "UTOOL")
-
-
-def quiet(text: str) -> str:
-    """A text with blanks for what says nothing in brackets and between lines."""
-    for silent in _SILENT:
-        text = silent.sub(lambda found: (found[1] or "").ljust(len(found[0])), text)
-    return text
-
-
-def lines(source: SourceText) -> Iterator[Line]:
-    """Statements and positions of a program.
-
-    Raises:
-        SourceError: a line is none.
-    """
-    read = SourceText(quiet(source.text), source.file)
-    sections = list(_SECTION.finditer(read.text))
-    starts = [(0, 0, "MN")] if not sections else [(s.start(), s.end(), s[1]) for s in sections]
-    ends = [start for start, _, _ in starts[1:]]
-    for (start, begin, word), end in zip(starts, [*ends, len(read.text)], strict=True):
-        if word.upper() == "PROG":
-            yield Line(read, start, begin)
-        elif word.upper() == "MN":
-            yield from _instructions(read, begin, end)
-        elif word.upper() == "POS":
-            yield from (Line(read, *p.span()) for p in _POSITION.finditer(read.text, begin, end))
-
-
-def _instructions(source: SourceText, at: int, end: int) -> Iterator[Line]:
-    while (line := _LINE.search(source.text, at, end)) is not None:
-        found = _STATEMENT.match(source.text, line.start(), end)
-        at = line.end() if found is None else max(line.end(), found.end())
-        if found is None and not _IDLE.match(line[0]):
-            why = "a line number with ':' should begin it, and ';' should end it"
-            raise source.error(why, line.start())
-        if found is not None and found["text"] and not found["nested"]:
-            start = found.start("text")
-            yield Line(source, start, start + len(found["text"].rstrip()))
+_OFFSETS = frozenset({"OFFSET", "TOOL_OFFSET"})
 
 
 class Grammar(MotionGrammar):
     """One program's lines."""
 
     form = XYZ
-    words = MOTION_WORDS
+    words = MOTION
     chained = frozenset({"A"})
     override = "OVERRIDE"
-    registers = frozenset(
-        {"R", "AR", "UFRAME_NUM", "UTOOL_NUM", "OVERRIDE", "OFFSET", "TOOL_OFFSET", *_WHOLE}
-    )
+    frames = FRAMES
+    registers = frozenset({"R", "AR", "OVERRIDE", *_OFFSETS})
     outputs = frozenset({"DO", "RO", "GO", "AO", "F", "SO", "UO"})
-    vectors: ClassVar = dict.fromkeys(_WHOLE, 6)
+    vectors: ClassVar = {"PR": 6}
     argument = "AR"
     spelling = Spelling(names=True)
     driving = re.compile(r"[JLCAS]\s+PR?\[|IF\b", re.IGNORECASE)
@@ -97,8 +40,8 @@ class Grammar(MotionGrammar):
     longest = 400
     forms: ClassVar = {
         "routine": r"/PROG\s+(?P<name>\S+).*",
-        "position": _POSITION.pattern,
-        "motion": MOTION,
+        "position": POSITION,
+        "motion": MOVED,
         "label": r"LBL\[\s*(?P<name>\d+)\s*\]",
         "jump": r"JMP\s+LBL\[\s*(?P<name>\d+)\s*\]",
         "call": r"CALL\s+(?P<name>[\w-]+)\s*(?:\((?P<arguments>.*)\))?",
@@ -124,42 +67,53 @@ class Grammar(MotionGrammar):
     }
 
     def motion(self, line: Line, found: Found) -> Said:
-        """A motion with its options."""
+        """A motion with what ``INC`` and offsets make of where it goes, and with ``TB`` and ``TA``
+        before and after its end, s, ``DB`` before it, mm."""
         given = self.options(line, found, "options", OPTION)
-        return self.drive(line, found, moved(line, given), events(line, given))
+        named = parse(line.source, *given["register"]) if "register" in given else None
+        word = "TOOL_OFFSET" if "of_tool" in given else "OFFSET"
 
-    def placed(self, numbers: Numbers, now: Situation) -> Placed:
-        """In the frames of the position, or those that are set."""
-        place = numbers.kind or Place()
-        goal = XYZ.target(numbers[:6], place.joints, place.configuration)
-        return Placed(goal, *FRAMES.both(place.tool, place.frame, now))
+        def moved(placed: Placed, now: Situation) -> Placed:
+            goal = placed.target
+            if "inc" in given or "offset" in given:
+                now.computed("target")
+            if "inc" in given:
+                goal = counted_on(goal, now.before, placed.tool, placed.work_object)
+            if "offset" in given:
+                register = now.number(named.index) if named else now.setting(word, 0.0)  # type: ignore
+                if register == 0:
+                    raise InputError(f"no {word} CONDITION says by how much")
+                shift = XYZ.pose(now.vector("PR", int(register)))
+                if isinstance(goal, JointTarget):
+                    raise InputError("joint values have no offset: give the position as a pose")
+                pose = goal.pose @ shift if "of_tool" in given else shift @ goal.pose
+                goal = replace(goal, pose=pose)
+            return replace(placed, target=goal)
+
+        events: tuple[Event, ...] = ()
+        if "when" in given:
+            parts = (line.source.text[slice(*given[one])] for one in ("when", "amount", "action"))
+            when, amount, action = parts
+            size = {"DB": 1e-3, "TA": -1.0}.get(when.upper(), 1.0) * float(amount)
+            place = "distance" if when.upper() == "DB" else "time"
+            events = (Event(action, span=line.source.span(*given["action"]), **{place: size}),)
+        return self.drive(line, found, moved, events)
 
     def position(self, line: Line, found: Found) -> Said:
-        """``P[1]{GP1: UF : 0, UT : 1, CONFIG : 'N U T, 0, 0, 0', X = 500.000 mm, …};``"""
-        bracket = line.start + line.text.index("{")
-        name = parse(line.source, line.start, bracket)
-        assert isinstance(name, Datum)
-        group = _GROUP.search(line.source.text, bracket, line.end)
-        begin, end = (bracket, line.end) if group is None else group.span("body")
+        """A position with its frame and tool, and its configuration."""
         values = {}
-        for one in _COORDINATE.finditer(line.source.text, begin, end):
+        for one in COORDINATE.finditer(line.source.text, *found.span("values")):
             span = line.source.span(*one.span(2))
             values[one[1].upper()] = Number(span, float(one[2].replace(" ", "")))
         joints = "J1" in values
         axes = [f"J{k}" for k in range(1, 7)] if joints else list("XYZWPR")
         if any(axis not in values for axis in axes):
             raise InputError("six coordinates should stand in it: X to R, or J1 to J6")
-        place = _place(line.source.text[begin:end], joints)
-        point = replace(name, span=line.span)
-        return NumberedPoint(line.span, point, tuple(values[axis] for axis in axes), place)
-
-
-def _place(own: str, joints: bool) -> Place:
-    frames, config = _IN_FRAMES.search(own), _CONFIG.search(own)
-    numbers = ("F", "F") if frames is None else frames.groups()
-    frame, tool = (None if v.upper() == "F" else int(v) for v in numbers)
-    label = None
-    if config is not None:
-        turns = (*(int(t) for t in re.findall(r"-?\d+", config[5])), 0, 0, 0)[:3]
-        label = PostureLabel("".join((config[1], config[3], config[4])).upper(), turns)
-    return Place(joints, frame, tool, label)
+        tool, frame = (
+            int(found[one]) if found[one] and found[one].upper() != "F" else None
+            for one in ("tool", "frame")
+        )
+        label = LETTERS.read(found["config"]) if found["config"] else None
+        point = replace(self.datum(line, found, "name"), span=line.span)
+        numbers = tuple(values[axis] for axis in axes)
+        return NumberedPoint(line.span, point, numbers, Place(joints, tool, frame, label))

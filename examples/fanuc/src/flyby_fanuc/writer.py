@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from flyby.core.errors import InputError
 from flyby.core.program.event import Event
 from flyby.core.program.move import Move
 from flyby.core.program.target import JointTarget, PoseTarget, Target
 from flyby.core.source.lines.language import LineWriter
-from flyby.core.source.lines.postures import PostureLabel
 from flyby.core.source.text.numerals import nine_decimals
 from flyby.core.spatial.pose import Pose
 
-from .words import XYZ
+from .words import LETTERS, XYZ
 
 _HEAD = """\
 /PROG  {name}
@@ -79,12 +77,8 @@ class Writer(LineWriter):
         if isinstance(target, JointTarget):
             axes = [f"\tJ{k + 1}= {v:>9} deg" for k, v in enumerate(values)]
         else:
-            label = target.configuration
-            if label is not None and not isinstance(label, PostureLabel):
-                raise InputError(
-                    f"{label} is no CONFIG: label the target's solution for this robot"
-                )
-            head += f"\t\tCONFIG : '{label}'," if label is not None else ""
+            label = LETTERS.written(target.configuration)
+            head += f"\t\tCONFIG : '{label}'," if label else ""
             units = ["mm"] * 3 + ["deg"] * 3
             axes = [f"\t{a} = {v:>9}  {u}" for a, v, u in zip("XYZWPR", values, units, strict=True)]
         return f"{head}\n{','.join(axes[:3])},\n{','.join(axes[3:])}\n}};\n"

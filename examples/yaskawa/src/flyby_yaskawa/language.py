@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from flyby.core.dialect import Orientation
@@ -14,7 +13,7 @@ from flyby.core.program.move import Move
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Placed, dialect_of
+from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Place, Placed, dialect_of
 from flyby.core.source.lines.expressions import Number, Operation, Spelling
 from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.language import LineLanguage, LineWriter
@@ -40,15 +39,6 @@ MOTION = MotionWords(
     motion="MOV{kind} {via}{point} {speed} {zone} {share}",
 )
 XYZ = PositionForm(Orientation.EULER_ZYX, last_first=True)
-FRAMES = FrameRegisters(XYZ, "TOOL")
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """What a position is beside its numbers: ``PULSE``, ``ANGLE``, ``BASE`` …; its tool."""
-
-    type: str
-    tool: int
 
 
 class Grammar(MotionGrammar):
@@ -59,7 +49,8 @@ class Grammar(MotionGrammar):
     chained = frozenset({"C"})
     registers = frozenset("BIDR")
     outputs = frozenset({"OT"})
-    vectors: ClassVar = {"TOOL": 6, "PULSE": 6}
+    frames = FrameRegisters("TOOL")
+    vectors: ClassVar = {"PULSE": 6}
     spelling = Spelling(datum=re.compile(r"(?P<word>[BIDRCP]|IN|OT)#?\(?(?P<index>\d+)\)?"))
     driving = re.compile("MOV")
     stopping = frozenset({"PAUSE"})
@@ -100,20 +91,19 @@ class Grammar(MotionGrammar):
         word = {"ADD": "+", "INC": "+", "MUL": "*", "DIV": "/"}.get(sign, "-")
         return Assign(line.span, target, Operation(line.span, word, (target, value)))
 
-    def kind_of(self, found: Found) -> Place:
-        """See `MotionGrammar`."""
-        return Place(self._type, self._tool)
+    def kind_of(self, found: Found) -> tuple[str, int]:
+        """Of a position: ``PULSE``, ``ANGLE``, ``BASE`` …; its tool."""
+        return self._type, self._tool
 
     def placed(self, numbers: Numbers, now: Situation) -> Placed:
         """Of pulses, in joint values or in the base."""
-        place = numbers.kind
-        if place.type not in ("PULSE", "ANGLE", "BASE", "ROBOT"):
-            raise InputError(f"positions of type {place.type or '(none)'} are not read: use BASE")
-        if place.type == "PULSE":
+        kind, tool = numbers.kind
+        if kind not in ("PULSE", "ANGLE", "BASE", "ROBOT"):
+            raise InputError(f"positions of type {kind or '(none)'} are not read: use BASE")
+        if kind == "PULSE":
             now.computed("target")
             numbers = _degrees(numbers, now)
-        goal = XYZ.target(numbers, place.type in ("PULSE", "ANGLE"))
-        return Placed(goal, FRAMES.tool_of(place.tool, now))
+        return super().placed(Numbers.of(numbers, Place(kind in ("PULSE", "ANGLE"), tool, 0)), now)
 
 
 def _degrees(pulses: Numbers, now: Situation) -> Numbers:

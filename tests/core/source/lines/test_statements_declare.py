@@ -17,13 +17,12 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import FINE, VendorZone, ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Placed, dialect_of
+from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, dialect_of
 from flyby.core.source.lines.expressions import Spelling
 from flyby.core.source.lines.language import LineLanguage, LineWriter
 from flyby.core.source.lines.motions import MotionWords
 from flyby.core.source.lines.positions import PositionForm
 from flyby.core.source.lines.settings import Setting, Settings
-from flyby.core.source.lines.statements import Numbers, Situation
 from flyby.core.source.reading import ReadOptions
 from flyby.core.source.text.numerals import nine_decimals
 
@@ -32,7 +31,6 @@ SHARE = Amount("tcp", lambda robot: FASTEST[robot.name] / 100)
 PASS = ZoneKind("@P", None, largest=0.02, unit=1e-3, step=1e-3, sizes=(0.02,))
 NEAR = ZoneKind("@", None, largest=0.5, unit=1e-3, step=1e-3)
 FORM = PositionForm(Orientation.EULER_ZYX, last_first=True)
-FRAMES = FrameRegisters(FORM, "TOOL", "FIELD", chosen=("CHANGETOOL", "CHANGEFIELD"))
 POINT = r"(?:[PJ]\d+|[PJ]\([^()]*\))"
 SMALL: Any = SimpleNamespace(name="small")
 LARGE: Any = SimpleNamespace(name="large")
@@ -55,8 +53,9 @@ class Grammar(MotionGrammar):
     kinds: ClassVar = {"P": "J"}
     joints = frozenset({"J"})
     inline = re.compile(r"(?P<kind>[PJ])\((?P<values>[^()]*)\)")
-    vectors: ClassVar = dict.fromkeys(("P", "J", "TOOL", "FIELD"), 6)
-    registers = frozenset({"I", "CHANGETOOL", "CHANGEFIELD"})
+    frames = FrameRegisters("TOOL", "FIELD", chosen=("CHANGETOOL", "CHANGEFIELD"))
+    vectors: ClassVar = {"P": 6, "J": 6}
+    registers = frozenset({"I"})
     spelling = Spelling(
         names=True, datum=re.compile(r"(?P<word>[PJI]|TOOL|FIELD)\s*(?P<index>\d+)")
     )
@@ -71,11 +70,6 @@ class Grammar(MotionGrammar):
         "assigned.held": r"(?P<target>CHANGETOOL|CHANGEFIELD)\s+(?P<value>.*)",
         "assigned": r"(?P<target>\w+)\s*=\s*(?P<value>.*)",
     }
-
-    def placed(self, numbers: Numbers, now: Situation) -> Placed:
-        return Placed(
-            FORM.target(numbers, numbers.kind in self.joints), *FRAMES.both(None, None, now)
-        )
 
 
 class Writer(LineWriter):
