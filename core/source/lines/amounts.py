@@ -70,16 +70,6 @@ def stated(speed: Speed, units: Units) -> tuple[str, float] | None:
     return None
 
 
-def speed_of(unit: str, number: float, units: Units, acceleration: float = 1.0) -> Speed:
-    """The speed of a number with its unit.
-
-    Args:
-        acceleration: `Speed.acceleration_override`.
-    """
-    amount = units[unit]
-    return with_number(Speed(acceleration_override=acceleration), amount.name, number * amount.one)
-
-
 def with_number(speed: Speed, name: str, value: float) -> Speed:
     """A speed with another number."""
     numbers: dict[str, Any] = {name: value}

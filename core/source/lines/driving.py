@@ -176,8 +176,7 @@ class MotionGrammar(FormGrammar):
 
     def __init__(self) -> None:
         super().__init__()
-        self._arc: ArcPoints[Operand] = ArcPoints()
-        self._before = ""
+        self._arc = ArcPoints()
         words, held = [word for word in (self.tool_word, self.frame_word) if word], self.frames
         known = [*words, *([held.tool, held.frame] if held is not None else ())]
         if known:
@@ -279,12 +278,11 @@ class MotionGrammar(FormGrammar):
         fixed = moved is _there and point.point is not None and not self.holds(point.point.word)
         called = found["point"] if fixed else ""
         if said in self.chained:
-            kind, via = self._chained(called, point)
+            kind, via = self._arc.add(point, called)
         else:
-            self._arc.end()
+            self._arc.end(called)
             if (kind == "C") != (via is not None):
                 raise InputError("an arc has two points, other motions have one")
-        self._before = called
         if not kind:
             return None
         speed = self._stated(line, found, UseKind.SPEED, "pace", "speed", "share")
@@ -340,21 +338,15 @@ class MotionGrammar(FormGrammar):
             return self.settings.operand(line.span, kind)
         whole, *numbers = (group for group in groups if group in found.re.groupindex)
         alone = [] if kind is UseKind.ZONE and "word" in found.re.groupindex else [whole]
-        return self.numbers_at(line, found, whole, *(numbers or alone))
+        given = (group for group in numbers or alone if found[group])
+        span = line.source.span(*found.span(whole)) if found[whole] else line.span
+        return Operand(span, tuple(self.parse(line, found, group) for group in given))
 
     def _says(self, found: Found, kind: UseKind) -> bool:
         """Whether a motion states its speed, or zone, itself."""
         group = "speed" if kind is UseKind.SPEED else "zone"
         held = self.settings.sets(kind) and not found.groupdict().get(group)
         return self.words is not None and not held
-
-    def _chained(self, said: str, point: Operand) -> tuple[str, Operand | None]:
-        """How a point of an arc is driven to, and through what; at a fixed point where the robot
-        stands already, the arc begins."""
-        if said and said == self._before and self._arc.open:
-            self._arc.begin()
-            return "", None
-        return self._arc.add(point)
 
 
 def _terms(value: Expression, sign: float = 1.0) -> Iterator[tuple[float, Operand]]:

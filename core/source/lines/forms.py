@@ -71,7 +71,7 @@ class FormGrammar(Grammar):
     longest: int = 1000
     second: float = 1.0
     helpers: ClassVar[frozenset[str]] = frozenset(
-        {"statement", "parse", "datum", "point_at", "numbers_at", "options", "holds"}
+        {"statement", "parse", "datum", "point_at", "options", "holds"}
     )
 
     def __init__(self) -> None:
@@ -128,17 +128,6 @@ class FormGrammar(Grammar):
         """The point in a group, as a part of a move."""
         datum = self.datum(line, found, group)
         return Operand(datum.span, point=datum)
-
-    def numbers_at(self, line: Line, found: Found, whole: str, *groups: str) -> Operand:
-        """The numbers in those of the groups that a move has, as a part of it.
-
-        Args:
-            whole: the group in whose place words of its own would be put; the whole line, if
-                that has nothing of the kind.
-        """
-        given = (group for group in groups if found[group])
-        span = line.source.span(*found.span(whole)) if found[whole] else line.span
-        return Operand(span, tuple(self.parse(line, found, group) for group in given))
 
     def options(
         self, line: Line, found: Found, group: str, option: re.Pattern[str]

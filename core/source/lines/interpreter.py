@@ -12,8 +12,8 @@ from dataclasses import replace
 from typing import NoReturn
 from weakref import proxy
 
-from ...errors import FlybyError, InputError, Note, PluginFault, SourceError, Span
-from ...program import call, move
+from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
+from ...program import move
 from ...program.move import Wait
 from ...program.program import Program
 from ..execution.analysis import Analysis
@@ -86,17 +86,7 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
         raise SourceError(
             unknown_name("routine", options.entry or "", known, "choose another entry"), where
         )
-    run = _Interpreter(program, grammar, options)
-    run.run(body)
-    return Program(
-        run.statements(),
-        options.entry or name or "main",
-        notes=run.notes(),
-        questions=run.course.questions(),
-        calls=run.calls(),
-        cycle=run.course.cycle,
-        sections=run.course.sections.found(run.course.cycle),
-    )
+    return _Interpreter(program, grammar, options).run(body, options.entry or name or "main")
 
 
 class _Interpreter:
@@ -127,22 +117,19 @@ class _Interpreter:
 
     # ---------------------------------------------------------------------- the run
 
-    def run(self, body: Body) -> None:
+    def run(self, body: Body, name: str) -> Program:
         """Carry a routine out to its end."""
         with suppress(_Finished):
             self._routine(body, "", Span(self._program.file, 1, 1, 0, 0))
-
-    def statements(self) -> tuple[move.Statement, ...]:
-        """What was carried out."""
-        return self._out.statements(self._reads)
-
-    def calls(self) -> tuple[call.Call, ...]:
-        """Routines that were entered, but for the first."""
-        return tuple(self._out.calls)
-
-    def notes(self) -> tuple[Note, ...]:
-        """What is to be said about the run."""
-        return (*self._out.notes.notes(), *self.course.notes())
+        return Program(
+            self._out.statements(self._reads),
+            name,
+            notes=(*self._out.notes.notes(), *self.course.notes()),
+            questions=self.course.questions(),
+            calls=tuple(self._out.calls),
+            cycle=self.course.cycle,
+            sections=self.course.sections.found(self.course.cycle),
+        )
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
         """See `core.source.execution.flow.Host`."""

@@ -177,13 +177,6 @@ class LineLanguage:
         name = name if name[0].isalpha() else f"P_{name}"
         return (name.upper() if self.capitals else name)[: self.longest_name or None]
 
-    def settings_of(self, kind: UseKind, part: MovePart, move: Move) -> tuple[float | None, ...]:
-        """The numbers of a speed or zone, in the order in which a move has them."""
-        words = self._words(kind, move)
-        if words is not None:
-            return words.numbers(part, move)
-        return self.grammar.settings.numbers(kind, part, move)
-
     def _words(self, kind: UseKind, move: Move) -> MotionWords | None:
         """The words with which a motion says a part itself; None where settings say it."""
         settings, at = self.grammar.settings, getattr(move.origin, kind, None)
@@ -196,14 +189,13 @@ class LineLanguage:
     def own(self, use: Use, later: Sequence[Move]) -> Iterator[Edit]:
         """What is put at a move that gets numbers, or words, of its own; ``later``: the moves
         behind it."""
-        target = isinstance(use.new, JointTarget | PoseTarget)
-        words = self.grammar.words if target else self._words(use.kind, use.move)
-        if words is not None:
-            yield from words.own(use)
-            return
-        if target or not self.grammar.settings.sets(use.kind):
-            raise InputError("there is no number of its own to change: write the program anew")
-        yield from self.grammar.settings.own(use, later)
+        words, settings = self._words(use.kind, use.move), self.grammar.settings
+        if isinstance(use.new, JointTarget | PoseTarget) or not (words or settings.sets(use.kind)):
+            raise InputError(
+                "there is no number of its own to change, and a position of its own is not put "
+                "in: change it for all that use it, or write the program anew"
+            )
+        yield from settings.own(use, later) if words is None else words.own(use)
 
     def reworded(self, use: Use) -> bool:
         """Whether a word at the motion, and no number, says what is to change."""
@@ -305,7 +297,10 @@ class LineLanguage:
         check_said(replace(move, events=()), self.dialect, self.name)
         if isinstance(part, JointTarget | PoseTarget):
             return self.grammar.form.numbers(part)
-        return self.settings_of(kind, part, move)
+        words = self._words(kind, move)
+        if words is not None:
+            return words.numbers(part, move)
+        return self.grammar.settings.numbers(kind, part, move)
 
     def _read(self, files: Files, main: str, options: ReadOptions) -> Program:
         own = self.of_arm(options.robot)

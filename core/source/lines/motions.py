@@ -9,13 +9,12 @@ from dataclasses import dataclass, replace
 from ...errors import InputError
 from ...program.move import Move, MoveJ
 from ...program.speed import Speed
-from ...program.target import JointTarget, PoseTarget
 from ...program.zone import FINE, VendorZone, Zone, ZoneKind
 from ...robot.model import Robot
 from ..patch.edits import Edit
 from ..patch.uses import MovePart, Use, UseKind
 from ..text.numerals import nine_decimals
-from .amounts import Units, of_arm, speed_of, stated
+from .amounts import Units, of_arm, stated, with_number
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,8 @@ class MotionWords:
         unit = unit if unit in units else unit.lower()
         longer = units[unit].name == "duration"
         number = numbers[0] / override if longer else numbers[0] * override
-        return speed_of(unit, number, units, acceleration)
+        speed = Speed(acceleration_override=acceleration)
+        return with_number(speed, units[unit].name, number * units[unit].one)
 
     def zone_of(self, word: str | None, numbers: Sequence[float]) -> Zone:
         """The zone of its word and numbers.
@@ -174,11 +174,6 @@ class MotionWords:
         Raises:
             InputError: the move says nothing of this part, or would have to say more.
         """
-        if isinstance(use.new, JointTarget | PoseTarget):
-            raise InputError(
-                "there is no number of its own to change, and a position of its own is not put "
-                "in: change it for all that use it, or write the program anew"
-            )
         if use.origin.span == use.statement:
             raise InputError("the motion says nothing of it, and nothing is put in: write it anew")
         if not isinstance(use.old, Speed):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Generic, TypeVar
 
 from ...errors import InputError
 from ...program.arc_orientation import ArcOrientation
@@ -14,8 +13,7 @@ from ...program.target import JointTarget, PoseTarget, Target
 from ...program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...program.zone import Zone
 from ...spatial.pose import Pose
-
-Point = TypeVar("Point")
+from .statements import Operand
 
 
 def made_move(
@@ -83,39 +81,32 @@ def counted_on(target: Target, before: Move | None, tool: Tool, work_object: Wor
     return replace(target, pose=Pose((x, y, z), turned.quaternion))
 
 
-class ArcPoints(Generic[Point]):
+class ArcPoints:
     """Arcs of one point a line: the first is where they begin, then one on the way and one at an
     end, in turn; another kind of move ends them."""
 
     def __init__(self) -> None:
         self._count = 0
-        self._middle: Point | None = None
+        self._middle: Operand | None = None
+        self._before = ""
 
-    def end(self) -> None:
-        """Another kind of move stands here.
+    def end(self, called: str) -> None:
+        """Another kind of move stands here, to a fixed point of this name, or to none (``""``).
 
         Raises:
             InputError: an arc has no end.
         """
         if self._middle is not None:
             raise InputError("the arc before has no end: such arcs have three points")
-        self._count = 0
+        self._count, self._before = 0, called
 
-    @property
-    def open(self) -> bool:
-        """Whether the point on the way is still to come."""
-        return self._middle is None
-
-    def begin(self) -> None:
-        """The robot stands where the arc begins."""
-        self._count = 1
-
-    def add(self, point: Point) -> tuple[str, Point | None]:
+    def add(self, point: Operand, called: str) -> tuple[str, Operand | None]:
         """How a point is driven to: ``L`` to where the arc begins, ``C`` with what is driven
-        through, ``""`` if it is that."""
-        self._count += 1
+        through, ``""`` if it is that, or the fixed point at which the robot stands already."""
+        stands = called != "" and called == self._before and self._middle is None
+        self._count, self._before = 1 if stands else self._count + 1, called
         if self._count == 1:
-            return "L", None
+            return "" if stands else "L", None
         if self._count % 2 == 0:
             self._middle = point
             return "", None
