@@ -36,6 +36,9 @@ ACROSS, BESIDE = 3.3, 1.5
 """m between the bases of a facing pair, and of neighbours."""
 TASKS = 33
 _HOME = (0.0, -0.2, 0.2, 0.0, 1.2, 0.0)
+DRAWN_BACK = (0.0, -0.7, 0.6, 0.0, 1.2, 0.0)
+"""Where robots with guns stand clear of those that reach over the middle; with `_HOME` guns do not
+(16 mm into a wrist, if a robot comes home late)."""
 _DOWN = (0.0, 1.0, 0.0, 0.0)
 _ABOVE = 0.15
 ROD = Tool("rod", Pose((0.0, 0.0, 0.3)))
@@ -60,7 +63,11 @@ def gun() -> Mesh:
 
 
 def four_robots(
-    *, stops: bool = False, locked: bool = True, shape: Geometry = _SHAPE
+    *,
+    stops: bool = False,
+    locked: bool = True,
+    shape: Geometry = _SHAPE,
+    home: tuple[float, ...] = _HOME,
 ) -> tuple[RobotStation, dict[str, tuple[Action, ...]]]:
     """The station, and what its programs do with signals.
 
@@ -68,12 +75,13 @@ def four_robots(
         stops: whether robots stop at every point, in place of zones of 50 mm.
         locked: whether the middle is held by signals; else programs only run.
         shape: of the tools.
+        home: rad, where robots stand at both ends of their programs.
     """
     members, actions = {}, {}
     words = find_vendor("abb").speaks
     for name, base in BASES.items():
         robot = find_robot(ROBOT).with_base(base)
-        program = _program(name, base, stops, locked)
+        program = _program(name, base, home, stops=stops, locked=locked)
         controller = Controller(find_vendor("abb"), robot)
         run = controller.run(program, None, None)
         cell = Cell(
@@ -94,7 +102,9 @@ def four_robots(
     return RobotStation(members, tuple(wires), clearance=CLEARANCE), actions
 
 
-def _program(name: str, base: Pose, stops: bool, locked: bool) -> Program:
+def _program(
+    name: str, base: Pose, home: tuple[float, ...], *, stops: bool, locked: bool
+) -> Program:
     """33 tasks, each above, down and up again; a quarter of them over the middle."""
     rng = np.random.default_rng(sum(map(ord, name)))
     over = TASKS // 4
@@ -118,5 +128,5 @@ def _program(name: str, base: Pose, stops: bool, locked: bool) -> Program:
         if locked and name in FIRST and k == over:
             statements.append(Opaque("SetDO doOut, 1;"))  # it has left the middle
         statements.append(MoveL(above, slow, zone, ROD))
-    statements.append(MoveJ(JointTarget(_HOME), Speed(tcp=1.5), FINE, ROD))
-    return Program(tuple(statements), name=name, start=JointTarget(_HOME))
+    statements.append(MoveJ(JointTarget(home), Speed(tcp=1.5), FINE, ROD))
+    return Program(tuple(statements), name=name, start=JointTarget(home))
