@@ -269,6 +269,7 @@ def _move_json(move: MoveReport) -> dict[str, Any]:
         "move": move.number,
         "kind": move.kind,
         "target": move.target,
+        "expression": move.expression,
         "position_m": move.position,
         **place_json(move.span),
         "driven": move.driven,

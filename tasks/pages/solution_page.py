@@ -18,6 +18,7 @@ from ...drawing.page.content import (
 from ...drawing.page.curves import CHARTS
 from ...problems.improve.solution import Solution
 from ..emulate import EmulateOptions, emulate_with
+from ..results.report import target_text
 from ..setup import setup_of_program
 from .program_tables import moves_table, notes_rows, page_shares, time_tables
 from .run_page import PageDraft, made_by
@@ -143,7 +144,7 @@ def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> Page
         cells: tuple[PageCell, ...] = (
             float(index + 1),
             float(line) if line else None,
-            _named(move),
+            target_text(after.report.moves[index]),
             saved,
             _zones(was, move),
             None if point is None else 1e3 * point.distance,
@@ -162,10 +163,6 @@ def _spent(run: Run, index: int) -> float | None:
     """s of a move, with what joints take to settle."""
     move = run.report.moves[index]
     return move.time + move.settling if move.driven else None
-
-
-def _named(move: Move) -> str:
-    return move.target.name or move.kind
 
 
 def _zones(was: Move | None, move: Move) -> str:

@@ -176,11 +176,13 @@ class _StationPage:
             facts["ends last"] = made.bottleneck
         if made.clearances:
             facts["least met"] = self._least()
-            proven = sum(pair.in_time.proven for pair in made.clearances)
+            proven = [pair for pair in made.clearances if made.keeps(pair)]
             kept = f"{1e3 * made.station.clearance:g} mm"
-            if proven < len(made.clearances):
-                kept += f" for {proven} of {counted(made.clearances, 'pair')}"
-            facts["proven in time"] = kept if proven else "nothing"
+            if len(proven) < len(made.clearances):
+                kept += f" for {len(proven)} of {counted(made.clearances, 'pair')}"
+            in_time = all(pair.in_time.proven for pair in proven)
+            how = "proven in time" if in_time else "proven under interlocks"
+            facts[how] = kept if proven else "nothing"
         return facts
 
     def _least(self) -> str:
@@ -305,9 +307,10 @@ class _StationPage:
             *(PageColumn(one) for one in ("in time", "any time", "interlocked")),
         ]
         rows = []
-        for pair, told in zip(self.made.clearances, self.made.pair_rows(), strict=True):
+        made = self.made
+        for pair, told in zip(made.clearances, made.pair_rows(), strict=True):
             cells: list[PageCell] = [told[0], 1e3 * pair.least, *told[2:]]
-            level = "error" if not pair.in_time.proven else "" if pair.safe else "warning"
+            level = "error" if not made.keeps(pair) else "" if pair.safe else "warning"
             rows.append(PageRow(cells, level, names.index(pair.robots[0]), pair.least_at))
         return PageTable("Distances", columns, rows)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...core.arrays import FloatArray
-from ...core.display import counted, in_line
+from ...core.display import counted, in_line, shown
 from ...core.driving.driven_program import DrivenProgram, Fault
 from ...core.errors import Note, Span
 from ...core.motion.emulator.binding_limits import LimitShare, limit_shares
@@ -17,9 +17,12 @@ from ...core.motion.emulator.move_figures import lengths_and_speeds, zone_reache
 from ...core.motion.emulator.run import Run
 from ...core.notebook import table
 from ...core.program.move import Move
+from ...core.program.origin import Ownership
+from ...core.program.program import Program
 from ...core.program.target import JointTarget
 from ...core.program.zone import Fine, Radius, VendorZone
 from ...core.robot.model import Robot
+from ...core.source.reading import Reading
 from ..options.texts import fixed
 
 if TYPE_CHECKING:
@@ -48,6 +51,8 @@ KINDS = {
 CUT = 1e-6
 """m by which a zone is smaller than programmed before it is shown as cut."""
 
+_WIDEST = 40
+"""Characters of a computed target that are shown."""
 _PICOSECONDS = 12
 """Decimals of a second beyond which a difference of times is rounding."""
 
@@ -100,6 +105,7 @@ class MoveReport:
         programmed_speed: of the TCP, m/s.
         zone: its end.
         limits: what holds the speed down, the longest first.
+        expression: how the program computes the target, as it is written; None where it does not.
     """
 
     number: int
@@ -118,6 +124,7 @@ class MoveReport:
     programmed_speed: float | None
     zone: ZoneReport
     limits: tuple[LimitShare, ...]
+    expression: str | None = None
 
     def __repr__(self) -> str:
         told = (
@@ -226,7 +233,7 @@ def make_report(
     """
     faults = {fault.move: fault for fault in driven.faults}
     moves = [_empty(i, move, faults.get(i)) for i, move in enumerate(driven.program.moves)]
-    waiting = 0.0
+    program, waiting = driven.program, 0.0
     for part, clock in zip(driven.parts, driven.begins, strict=True):
         for i, row in _rows(part.run, robot).items():
             number = part.first + i + 1
@@ -234,6 +241,10 @@ def make_report(
         waiting += float(part.run.path.route.dwell.sum())
     if not driven.parts:
         waiting = driven.duration
+    moves = [
+        replace(row, expression=_expression(program, move))
+        for row, move in zip(moves, program.moves, strict=True)
+    ]
     to_cell = own = None
     if clearances:
         from ...core.collision.clearance import nearest_of
@@ -347,6 +358,17 @@ def _position(move: Move) -> tuple[float, float, float] | None:
     return move.target.pose.position
 
 
+def _expression(program: Program, move: Move) -> str | None:
+    """How a program computes the target of a move, in a line."""
+    origin, reading = move.origin, program.reading
+    if origin is None or origin.target.ownership is not Ownership.DERIVED:
+        return None
+    span = origin.target.span
+    if span is None or not isinstance(reading, Reading) or span.file not in reading.files:
+        return None
+    return " ".join(reading.files[span.file].text[span.start : span.end].split()) or None
+
+
 def seconds(rest: float) -> str:
     """A time of rest, empty for none."""
     return f"{rest:.3f}" if rest else ""
@@ -372,9 +394,12 @@ def move_row(move: MoveReport) -> tuple[str, ...]:
 
 
 def target_text(move: MoveReport) -> str:
-    """Where a move goes: the name of its target, or its place in mm."""
+    """Where a move goes: the name of its target, how it is computed, or its place in mm."""
     if move.target is not None:
         return move.target
+    if move.expression is not None:
+        text = shown(move.expression)
+        return text if len(text) <= _WIDEST else f"{text[: _WIDEST - 1]}…"
     if move.position is None:
         return "joint values"
     return ", ".join(fixed(1e3 * value, 1) for value in move.position)

@@ -99,9 +99,10 @@ class DrivenStation:
     def clear(self) -> bool:
         """Whether all robots are proven to keep clear of each other: in time, or in every order
         that the signals allow, which no robot that is early or late can leave."""
-        return all(map(self._keeps, self.clearances))
+        return all(map(self.keeps, self.clearances))
 
-    def _keeps(self, pair: PairClearance) -> bool:
+    def keeps(self, pair: PairClearance) -> bool:
+        """The same of two robots."""
         return pair.in_time.proven or (pair.safe and pair.least >= self.station.clearance)
 
     @property
@@ -188,7 +189,7 @@ class DrivenStation:
         """What is wrong, in sentences."""
         found = [] if self.deadlock is None else [str(self.deadlock)]
         for pair in self.clearances:
-            if self._keeps(pair):
+            if self.keeps(pair):
                 continue
             found += [self.conflict_said(pair, c) for c in pair.in_time.conflicts.values()]
             if not pair.in_time.proven and pair.least < 0.0:

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import flyby
 from flyby.core.arrays import FloatArray
 from flyby.core.driving.driven_program import DrivenProgram
 from flyby.core.motion.emulator.controller import Controller
@@ -24,7 +25,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.pose import Pose
 from flyby.drawing.geometry import path_geometry
-from flyby.tasks.results.report import Report, make_report
+from flyby.tasks.results.report import Report, make_report, target_text
 
 ROBOT = find_robot("abb/irb6640-180-255")
 CONTROLLER = Controller(find_vendor("abb"), ROBOT)
@@ -202,3 +203,29 @@ def test_the_drawn_path_runs_from_waypoint_to_waypoint(small: Small) -> None:
         assert points[-1] == pytest.approx(end, abs=1e-9)
     assert geometry.waypoints[0] == pytest.approx(run.trajectory.position[0])
     assert geometry.waypoints[-1] == pytest.approx(run.trajectory.position[-1])
+
+
+def test_computed_targets_are_named_as_they_are_written(tmp_path: Path) -> None:
+    points = "[[1200,0,{z}],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+    program = tmp_path / "m.mod"
+    program.write_text(
+        "MODULE M\n"
+        f" CONST robtarget p10 := {points.format(z=900)};\n"
+        " PROC main()\n"
+        "  MoveJ p10, v1000, z10, tool0;\n"
+        "  MoveL Offs(p10, 0,\n    100, 50), v500, z10, tool0;\n"
+        "  MoveL RelTool(p10, 0, 0, -50 \\Rz:=10), v500, fine, tool0;\n"
+        "  MoveL RelTool(RelTool(p10, 0, 0, -50), 10, 20, 30 \\Rx:=10), v500, fine, tool0;\n"
+        f"  MoveL {points.format(z=800)}, v500, fine, tool0;\n"
+        " ENDPROC\nENDMODULE\n",
+        "utf-8",
+    )
+    moves = flyby.emulate(flyby.read(program, robot="abb/irb6640-180-255")).report.moves
+    assert [target_text(move) for move in moves] == [
+        "p10",
+        "Offs(p10, 0, 100, 50)",
+        "RelTool(p10, 0, 0, -50 \\Rz:=10)",
+        "RelTool(RelTool(p10, 0, 0, -50), 10, 20…",
+        "1200.0, 0.0, 800.0",
+    ]
+    assert moves[3].expression == "RelTool(RelTool(p10, 0, 0, -50), 10, 20, 30 \\Rx:=10)"

@@ -163,9 +163,9 @@ export class SceneView {
     this.veils.collect(this.root);
   }
 
-  /** Points of the arms that shall be seen: their joints and tips. */
+  /** Points of the arms that shall be seen, ghosts left out: their joints and tips. */
   seen() {
-    return this.arms.flatMap((arm) => {
+    return this.arms.filter((arm) => !arm.ghost).flatMap((arm) => {
       const links = arm.nodes.slice(1).map((node) => new Vector3().setFromMatrixPosition(node.matrix));
       return [...links, new Vector3(...arm.track.tcp(this.session.timeOf(arm.track)))];
     });

@@ -5,6 +5,7 @@ import {
   BufferAttribute,
   BufferGeometry,
   CapsuleGeometry,
+  CustomBlending,
   CylinderGeometry,
   EdgesGeometry,
   Group,
@@ -13,7 +14,10 @@ import {
   Matrix4,
   Mesh,
   MeshLambertMaterial,
+  OneFactor,
+  OneMinusSrcAlphaFactor,
   SphereGeometry,
+  SrcAlphaFactor,
 } from "three";
 import { coarse } from "./coarse.js";
 import { columnMajor } from "./kinematics.js";
@@ -59,9 +63,24 @@ const LOOKS = {
 const SEEN_THROUGH = { obstacle: 0.42, floor: 0.5 };
 const GHOST = { light: 0x2f6fb3, dark: 0x7db7f0 };
 
+/** Seen through, and drawn before all else, so that what is solid hides it: where the two arms went
+ * through each other, patches of the one would come and go on the other. */
+function ghostMaterial(theme) {
+  return new MeshLambertMaterial({
+    color: GHOST[theme],
+    opacity: 0.3,
+    blending: CustomBlending, // with transparent it would be drawn last
+    blendSrc: SrcAlphaFactor,
+    blendDst: OneMinusSrcAlphaFactor,
+    blendSrcAlpha: OneFactor, // the picture stays opaque
+    depthTest: false,
+    depthWrite: false,
+  });
+}
+
 function material(role, ghost, theme, number) {
   const looks = LOOKS[theme];
-  if (ghost) return new MeshLambertMaterial({ color: GHOST[theme], transparent: true, opacity: 0.22, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4 });
+  if (ghost) return ghostMaterial(theme);
   const colour = role === "link" && number % 2 ? looks.joint : looks[role];
   const opacity = SEEN_THROUGH[role] ?? 1;
   return new MeshLambertMaterial({
@@ -80,7 +99,8 @@ export function bodyObject(body, { ghost, theme, number, plain }) {
   const mesh = new Mesh(geometry, material(body.role, ghost, theme, number));
   mesh.userData.body = body;
   mesh.userData.solid = true;
-  if (SEEN_THROUGH[body.role]) mesh.renderOrder = 2;
+  if (ghost) mesh.renderOrder = -1;
+  else if (SEEN_THROUGH[body.role]) mesh.renderOrder = 2;
   group.add(mesh);
   if (!ghost && body.role === "obstacle") {
     const colour = LOOKS[theme].edge;

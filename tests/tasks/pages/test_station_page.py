@@ -10,6 +10,8 @@ import numpy as np
 import flyby
 from flyby.tasks.pages.station_page import station_page
 
+from ..station.hand_over_scene import hand_over
+
 EXAMPLE = Path(__file__).parents[3] / "examples/two_robots"
 
 
@@ -31,3 +33,13 @@ def test_a_robot_stands_until_its_program_begins(tmp_path: Path) -> None:
     assert np.abs(speed.values.values[before]).max() < 1e-3
     (near,) = [one for one in right.channels if one.name == "to left"]
     assert np.ptp(near.values.values[before]) > 100.0
+
+
+def test_what_interlocks_keep_apart_is_said_to_be_proven(tmp_path: Path) -> None:
+    """By times alone nobody can be sure that a part is taken in time; by the signals it is."""
+    made = flyby.station(hand_over(tmp_path))
+    assert made.clear and not made.clearances[0].in_time.proven
+    page = station_page(made)
+    assert page.facts["proven under interlocks"] == "5 mm"
+    (distances,) = [table for table in page.tables if table.title == "Distances"]
+    assert [row.level for row in distances.rows] == [""]
