@@ -93,4 +93,5 @@ def _axis(axis: ExternalAxis) -> dict[str, Any]:
         f"acceleration_{unit}_s2": joint.acceleration,
     }
     entries |= {"pose": pose_entries(joint.placement)} if joint.placement != IDENTITY else {}
-    return entries if axis.carried_by is None else {**entries, "carried_by": axis.carried_by}
+    entries |= {} if axis.carried_by is None else {"carried_by": axis.carried_by}
+    return entries if axis.number is None else {**entries, "number": axis.number}

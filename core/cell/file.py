@@ -176,9 +176,18 @@ def _external_axis(name: str, table: TomlTable) -> ExternalAxis:
         joint=joint,
         role=ExternalRole(table.choice("role", list(ExternalRole))),
         carried_by=table.text("carried_by") if table.has("carried_by") else None,
+        number=_counted(table, "number") if table.has("number") else None,
     )
     table.finish()
     return axis
+
+
+def _counted(table: TomlTable, key: str) -> int:
+    """A place in a row, from 1."""
+    number = table.number(key)
+    if number < 1 or number != int(number):
+        raise table.error(key, f"counts from 1, and is not {number:g}")
+    return int(number)
 
 
 def _direction(table: TomlTable) -> Vector3:

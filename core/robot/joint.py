@@ -265,12 +265,15 @@ class ExternalAxis:
             turntable, the long axis of a gantry); None for the floor.
         inertia: of the moving part in the frame behind the joint; None if not known, and then
             the torque of this axis comes out as NaN.
+        number: the controller's own, from 1, where targets of programs have places for axes that
+            the robot has not; None for the one after the axis before it.
     """
 
     joint: Joint
     role: ExternalRole
     carried_by: str | None = None
     inertia: Inertia | None = None
+    number: int | None = None
 
     @property
     def name(self) -> str:

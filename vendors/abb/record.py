@@ -29,7 +29,7 @@ from ...core.errors import InputError
 from ...core.recording import Recording, comments, listed
 from ...core.source.text.names import Names
 from ...core.source.write.options import OpaqueStyle, StructureStyle
-from .values.records import ARM_AXES
+from .values.records import ARM_AXES, NO_AXIS
 from .write.formatting import NAME_RULES
 from .write.numbers import number
 from .write.options import RapidOptions
@@ -311,6 +311,8 @@ def _line_routine(options: RapidOptions) -> list[str]:
     """One line of the log."""
     values = [f"NumToStr(at.robax.rax_{n}*pi/180,6)" for n in range(1, ARM_AXES + 1)]
     for axis, kind in zip("abcdef", options.external_axes, strict=False):
+        if kind == NO_AXIS:
+            continue
         unit = "/1000" if kind == "linear" else "*pi/180"
         values.append(f"NumToStr(at.extax.eax_{axis}{unit},6)")
     pieces = ['","+' + '+","+'.join(piece) for piece in _pieces(values)]
@@ -323,7 +325,8 @@ def _line_routine(options: RapidOptions) -> list[str]:
 
 
 def _columns(options: RapidOptions) -> list[str]:
-    return [f"q{n}" for n in range(1, ARM_AXES + len(options.external_axes) + 1)]
+    external = sum(kind != NO_AXIS for kind in options.external_axes)
+    return [f"q{n}" for n in range(1, ARM_AXES + external + 1)]
 
 
 def _pieces(values: Sequence[str]) -> list[Sequence[str]]:

@@ -517,8 +517,11 @@ held_frames = st.one_of(
             st.sampled_from(["wobj0", "wTable"]),
             poses,
             poses,
-            moved_by=st.sampled_from([None, "STN1"]),
         ),
+    ),
+    st.tuples(
+        st.builds(Tool, tool_names, poses),
+        st.builds(WorkObject, st.just("wTurned"), frame=poses, moved_by=st.just("STN1")),
     ),
     st.tuples(
         st.builds(Tool, tool_names, poses, robot_held=st.just(False)),

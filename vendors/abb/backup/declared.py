@@ -20,7 +20,16 @@ from ..motion.external_axes import axis_kinds
 from ..motion.targets import UNDEFINED_MASS
 from ..syntax import tree
 from ..values.predefined import NAMES
-from ..values.records import LOAD0, PER_METRE, UNUSED_AXIS, Record, tool_value, work_object_value
+from ..values.records import (
+    LOAD0,
+    NO_AXIS,
+    PER_METRE,
+    UNUSED_AXIS,
+    Record,
+    carried,
+    tool_value,
+    work_object_value,
+)
 from ..values.types import BUILT_IN, RecordType, Value, mismatch
 from .modules import ModuleFile
 
@@ -51,7 +60,9 @@ class Declared:
         """
         makers: dict[str, Callable[[tree.Declaration, str], None]] = {
             "tooldata": lambda one, file: _keep(self.tools, task, one, file, _tool, notes),
-            "wobjdata": lambda one, file: _keep(self.frames, task, one, file, _frame, notes),
+            "wobjdata": lambda one, file: _keep(
+                self.frames, task, one, file, lambda value, name: _frame(value, name, robot), notes
+            ),
             "jointtarget": lambda one, file: _keep(
                 self.homes, task, one, file, lambda value, name: _home(value, name, robot), notes
             ),
@@ -110,10 +121,12 @@ def _tool(value: Record, name: str) -> Tool:
     return tool_value((held, frame, LOAD0 if load[0] == UNDEFINED_MASS else load), name)
 
 
-def _frame(value: Record, name: str) -> WorkObject:
+def _frame(value: Record, name: str, robot: Robot | None) -> WorkObject:
     if not value[1] and not value[2]:
         raise InputError("ufprog is FALSE, and ufmec names no unit")
-    return work_object_value(value, name)
+    made = work_object_value(value, name)
+    driven = () if robot is None else [axis.name for axis in robot.external_axes]
+    return carried(made) if made.moved_by in driven else made
 
 
 def _home(value: Record, name: str, robot: Robot | None) -> JointTarget | None:
@@ -125,6 +138,8 @@ def _home(value: Record, name: str, robot: Robot | None) -> JointTarget | None:
         raise InputError("an axis of the arm has no value (9E9)")
     used = []
     for kind, at in zip(axis_kinds(robot) or (), external, strict=False):
+        if kind == NO_AXIS:
+            continue
         if abs(at) >= UNUSED_AXIS:
             break
         used.append(at / PER_METRE if kind == "linear" else math.radians(at))

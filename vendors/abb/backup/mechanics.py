@@ -287,16 +287,18 @@ def _with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
     lacks = [lack for unit in units for lack in unit.lacks]
     made = sorted((unit for unit in units if unit.axis is not None), key=lambda unit: unit.number)
     axes: list[ExternalAxis] = []
-    first = robot.arm_size == AXES  # whose eax_a is the arm's own
+    behind = int(robot.arm_size == AXES)  # whose eax_a is the arm's own
     for unit in made:
-        if unit.number != first + len(axes):
+        if unit.number < behind:
             lacks.append(
-                f"unit {unit.name} is eax_{'abcdef'[unit.number]} of robtargets, and it is not "
-                "known what stands before it: it is left out"
+                f"unit {unit.name} is eax_{'abcdef'[unit.number]} of robtargets, and so is another "
+                "one: it is left out"
             )
             continue
         assert unit.axis is not None
-        axes.append(unit.axis)
+        skips = unit.number > behind  # of places that are no axis of this robot
+        axes.append(replace(unit.axis, number=unit.number + 1) if skips else unit.axis)
+        behind = unit.number + 1
     names = {axis.name for axis in axes}
     for place, axis in enumerate(axes):
         if axis.carried_by is not None and axis.carried_by not in names:

@@ -9,12 +9,25 @@ from typing import TYPE_CHECKING
 from ....core.door import spelt
 from ....core.errors import InputError, SourceError, Span
 from ....core.source.execution.transcript import Notes
-from ..values.records import ARM_AXES, AXIS_KINDS, PER_METRE, SEVENTH, UNUSED_AXIS, arm_axes
+from ..values.records import (
+    ARM_AXES,
+    AXIS_KINDS,
+    EXTERNAL_AXES,
+    NO_AXIS,
+    PER_METRE,
+    SEVENTH,
+    UNUSED_AXIS,
+    arm_axes,
+)
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:
+    from ....core.robot.joint import ExternalAxis
     from ....core.robot.model import Robot
 
+LETTERS = "abcdef"
+"""Of eax_a to eax_f."""
+_NAMES = tuple(f"eax_{letter}" for letter in LETTERS)
 TEACHING = 0.05
 """mm or degrees: points that are taught on a standing axis differ by less."""
 
@@ -23,8 +36,8 @@ class ExternalAxes:
     """Makes the values of a robot's external axes of those in targets.
 
     Args:
-        kinds: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot; None if the robot
-            is not known.
+        kinds: ``"linear"`` or ``"rotating"`` for eax_a, eax_b, … of the robot, ``"none"`` for one
+            that it has not and that stands before one that it has; None if the robot is not known.
         robot: None if it is not known.
     """
 
@@ -90,33 +103,43 @@ class ExternalAxes:
             return ()
         if self._kinds is None:
             return self._of_unknown_robot(extax, used, span)
-        count = len(self._kinds)
-        for number in range(count, len(extax)):
-            if used[number]:
-                self._stands(number, extax[number], span)
-        last = max((i for i in range(count) if used[i]), default=-1)
-        if not all(used[: last + 1]):
-            raise SourceError(
-                "an external axis without a value (9E9) stands before one that has a value: give "
-                "it a value",
-                span,
-            )
         kinds = self._kinds
+        places = [place for place, kind in enumerate(kinds) if kind != NO_AXIS]
+        for number in range(len(extax)):
+            if used[number] and number not in places:
+                self._stands(number, extax[number], span)
+        last = max((place for place in places if used[place]), default=-1)
+        driven = [place for place in places if place <= last]
+        for place in driven:
+            if not used[place]:
+                self._left_out(place, used.index(True, place), span)
         return tuple(
-            extax[i] / PER_METRE if kinds[i] == "linear" else math.radians(extax[i])
-            for i in range(last + 1)
+            extax[i] / PER_METRE if kinds[i] == "linear" else math.radians(extax[i]) for i in driven
+        )
+
+    def _left_out(self, place: int, behind: int, span: Span) -> None:
+        """An axis of the robot that has no value, and the next one that has.
+
+        Raises:
+            SourceError: always.
+        """
+        none, given = (f"eax_{LETTERS[number]}" for number in (place, behind))
+        raise SourceError(
+            f"external axis {none} has no value (9E9), and {given} behind it has: give it a value, "
+            "or, if the robot has no such axis, say in the cell file which ones it has: "
+            f"[external_axis.…] with number = {behind + 1} is {given}",
+            span,
         )
 
     def _stands(self, number: int, value: float, span: Span) -> None:
         """An axis that the robot has not, which must stay where it is."""
-        axis = f"eax_{'abcdef'[number]}"
+        axis = f"eax_{LETTERS[number]}"
         stands = self._standing.setdefault(number, value)
         if abs(value - stands) > TEACHING:
             assert self._kinds is not None
             raise SourceError(
                 f"external axis {axis} is moved from {stands:g} to {value:g}, and the robot has "
-                f"{len(self._kinds)} external axes{cell_axis(axis, self._robot)}; if the arm has "
-                "seven axes, name it (IRB 14050, YuMi left, YuMi right): eax_a is one of them",
+                f"{_those(self._kinds)}{cell_axis(axis, self._robot)}{_arm_of_seven(number)}",
                 span,
             )
         if value != 0:
@@ -135,7 +158,7 @@ class ExternalAxes:
         for number, value in enumerate(extax):
             if used[number] and value != 0:
                 raise SourceError(
-                    f"external axis eax_{'abcdef'[number]} is sent to {value:g}, and the text does "
+                    f"external axis eax_{LETTERS[number]} is sent to {value:g}, and the text does "
                     "not say whether that is mm or degrees: tell the reader the robot's axes "
                     "(external_axes=('linear',) or ('rotating',))",
                     span,
@@ -153,9 +176,31 @@ def cell_axis(name: str, robot: Robot | None) -> str:
     arm = "vendor/robot" if robot is None else robot.name
     return (
         f'; to drive it, give a cell file ({spelt("cell")}): robot = "{arm}", '
-        f'[external_axis.{name}] with role = "table" or "track", kind = "revolute" or '
-        '"prismatic", axis, pose, range, speed and acceleration'
+        f'[external_axis.{name}] with role = "table" or "track", kind = "revolute", axis, '
+        'range_deg, speed_deg_s and acceleration_deg_s2, or kind = "prismatic", axis, range_mm, '
+        "speed_mm_s and acceleration_mm_s2; pose if it is not at the world's origin"
     )
+
+
+def _those(kinds: Sequence[str]) -> str:
+    """The external axes that a robot has, in words."""
+    names = [f"eax_{LETTERS[place]}" for place, kind in enumerate(kinds) if kind != NO_AXIS]
+    return ", ".join(names) + " only" if names else "0 external axes"
+
+
+def _arm_of_seven(number: int) -> str:
+    if number != 0:
+        return ""
+    return (
+        "; if the arm has seven axes, name it (IRB 14050, YuMi left, YuMi right): eax_a is one of "
+        "them"
+    )
+
+
+def tables(robot: Robot | None) -> str:
+    """The external axes that carry work objects, in words; empty if there is none."""
+    axes = () if robot is None else robot.external_axes
+    return " or ".join(axis.name for axis in axes if axis.role == "table")
 
 
 def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
@@ -164,6 +209,25 @@ def axis_kinds(robot: Robot | None) -> tuple[str, ...] | None:
         return None
     from ....core.robot.joint import JointKind  # late: it takes time
 
-    axes = [axis.joint.kind for axis in robot.external_axes]
-    own = (SEVENTH,) if robot.arm_size == ARM_AXES + 1 else ()
-    return *own, *("linear" if kind is JointKind.PRISMATIC else "rotating" for kind in axes)
+    kinds = [SEVENTH] if robot.arm_size == ARM_AXES + 1 else []
+    for axis in robot.external_axes:
+        place = _place(axis)
+        if place is not None:
+            if not len(kinds) <= place < EXTERNAL_AXES:
+                raise InputError(
+                    f"external axis {axis.name} is eax_{LETTERS[place]} of targets, or behind it, "
+                    "and so is one before it: let external axes stand in the order of their places"
+                    if place < EXTERNAL_AXES
+                    else f"external axis {axis.name} has the number {place + 1}: RAPID has six"
+                )
+            kinds += [NO_AXIS] * (place - len(kinds))
+        kinds.append("linear" if axis.joint.kind is JointKind.PRISMATIC else "rotating")
+    return tuple(kinds)
+
+
+def _place(axis: ExternalAxis) -> int | None:
+    """The place of an axis in an extjoint, from 0, by its number or a name as ``eax_b``."""
+    if axis.number is not None:
+        return axis.number - 1
+    name = axis.name.casefold()
+    return LETTERS.index(name[-1]) if name in _NAMES else None

@@ -17,9 +17,11 @@ from ..values.records import (
     ARM_AXES,
     EXTERNAL_AXES,
     MM,
+    NO_AXIS,
     UNUSED_AXIS,
     Record,
     arm_axes,
+    in_places,
     pose_record,
 )
 from .configuration import AbbConfiguration, label
@@ -140,12 +142,13 @@ class Position(PresentPosition):
             UNUSED_AXIS
             if value is None
             else (value / MM if kind == "linear" else math.degrees(value))
-            for value, kind in zip(values, self._axes, strict=False)
+            for value, kind in zip(in_places(values, self._axes), self._axes, strict=False)
         ]
         return tuple(shown + [UNUSED_AXIS] * (EXTERNAL_AXES - len(shown)))
 
     def _joint_record(self, q: FloatArray) -> Record:
-        arm = len(q) - len(self._axes)  # the first six of seven
+        own = sum(kind != NO_AXIS for kind in self._axes)
+        arm = len(q) - own  # the first six of seven
         joints = axis_values(self.robot, q[:arm])[:ARM_AXES]
         robax = tuple(joints + [0.0] * (ARM_AXES - len(joints)))
         return (robax, self._extax([float(v) for v in q[arm:]]))

@@ -15,7 +15,7 @@ from ....core.program.zone import FINE, Zone
 from ....core.source.execution.scopes import alike
 from ....core.source.execution.transcript import Notes
 from ....core.source.text.axis_values import arm_values
-from ....core.spatial.pose import Pose, Quaternion
+from ....core.spatial.pose import IDENTITY, Pose, Quaternion
 from ..syntax.tree import Expression, Name
 from ..values.evaluator import Evaluator
 from ..values.located import Located
@@ -25,6 +25,7 @@ from ..values.records import (
     UNUSED_AXIS,
     VMAX,
     Record,
+    carried,
     check_speed,
     load_value,
     metres,
@@ -47,7 +48,7 @@ from ..values.types import (
     Value,
 )
 from .configuration import AbbConfiguration
-from .external_axes import ExternalAxes, cell_axis
+from .external_axes import ExternalAxes, cell_axis, tables
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:
@@ -133,7 +134,9 @@ class Converter:
             )
         followed = value[1] or self._carries(value[2])
         if not followed:
-            cell = cell_axis(value[2], self._robot)
+            own = tables(self._robot)
+            cell = f"; if {own} carries it, call that axis so in the cell file" if own else ""
+            cell = cell or cell_axis(value[2], self._robot)
             self._notes.once(
                 f"carrier of {name}",
                 f"work object {name} is moved by {value[2]}, which is no axis of this robot (a "
@@ -144,7 +147,16 @@ class Converter:
 
         def make(record: Record, name: str) -> WorkObject:
             made = work_object_value(record, name)
-            return made if followed else standing(made)
+            if not followed:
+                return standing(made)
+            if made.moved_by is not None and made.user != IDENTITY:
+                self._notes.once(
+                    f"user frame of {name}",
+                    f"the uframe of work object {name} does not count, as {made.moved_by} moves it "
+                    "(ufprog FALSE): the controller takes the frame of that unit",
+                    expression.span,
+                )
+            return carried(made)
 
         return self._cached(
             ("work object", name, value),

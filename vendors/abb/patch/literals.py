@@ -23,6 +23,7 @@ from ..values.records import (
     ARM_AXES,
     EXTERNAL_AXES,
     MM,
+    NO_AXIS,
     UNUSED_AXIS,
     arm_axes,
     extax_values,
@@ -171,7 +172,7 @@ def _extax(target: PoseTarget | JointTarget, kinds: Sequence[str]) -> list[Liter
     if arm_axes(kinds) > ARM_AXES and not values:
         values = (None,)
     used = [
-        unstated
+        (free if kind == NO_AXIS else unstated)
         if value is None
         else (in_millimetres(value) if kind == "linear" else _degrees(value))
         for value, kind in zip(values, kinds, strict=False)

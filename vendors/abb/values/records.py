@@ -21,7 +21,7 @@ from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Fine, Radius, Zone
-from ....core.spatial.pose import Pose, Quaternion, Vector3
+from ....core.spatial.pose import IDENTITY, Pose, Quaternion, Vector3
 
 Record = tuple[Any, ...]
 """Numbers, booleans, strings and further records."""
@@ -41,7 +41,9 @@ EXTERNAL_AXES = 6
 SEVENTH = "seventh"
 """Kind of ``eax_a`` of an arm with seven axes: of a jointtarget its own seventh axis, of a
 robtarget the arm angle."""
-AXIS_KINDS = ("linear", "rotating", SEVENTH)
+NO_AXIS = "none"
+"""Kind of an ``eax`` that stands before an axis of the robot and is none of it."""
+AXIS_KINDS = ("linear", "rotating", SEVENTH, NO_AXIS)
 """Of external axes: RAPID's own text does not say which one an axis is."""
 
 VMAX: Record = (10000.0, 500.0, 5000.0, 1000.0)
@@ -66,9 +68,24 @@ def extax_values(
         kinds: of external axes, as for the reader.
     """
     if arm_axes(kinds) == ARM_AXES:
-        return target.external
+        return in_places(target.external, kinds)
     own = target.arm_angle if isinstance(target, PoseTarget) else target.joints[ARM_AXES:][0]
-    return (own, *target.external) if own is not None or target.external else ()
+    used = own is not None or target.external
+    return in_places((own, *target.external), kinds) if used else ()
+
+
+def in_places(values: Sequence[float | None], kinds: Sequence[str]) -> tuple[float | None, ...]:
+    """Values of a robot's axes where an extjoint has them; None at places that are no axis.
+
+    Args:
+        kinds: of external axes, as for the reader.
+    """
+    placed: list[float | None] = []
+    for value in values:
+        while tuple(kinds[len(placed) : len(placed) + 1]) == (NO_AXIS,):
+            placed.append(None)
+        placed.append(value)
+    return tuple(placed)
 
 
 def metres(point: Sequence[float]) -> Vector3:
@@ -234,6 +251,12 @@ def work_object_value(record: Record, name: str) -> WorkObject:
     return WorkObject(name, pose_value(uframe), pose_value(oframe), robhold, moved_by)
 
 
+def carried(work_object: WorkObject) -> WorkObject:
+    """A work object as the controller takes it: it keeps the user frame of one that a unit moves,
+    by the system's parameters, whatever its data say (wobjdata, ``uframe``)."""
+    return work_object if work_object.moved_by is None else replace(work_object, user=IDENTITY)
+
+
 def standing(work_object: WorkObject) -> WorkObject:
     """A work object that a unit moves which the robot has not, as it is declared."""
     return replace(work_object, moved_by=None, not_followed=work_object.moved_by)
@@ -242,5 +265,8 @@ def standing(work_object: WorkObject) -> WorkObject:
 def work_object_record(work_object: WorkObject) -> Record:
     """As `work_object_value` takes it."""
     moved_by = work_object.moved_by or work_object.not_followed
-    frames = (pose_record(work_object.user), pose_record(work_object.frame))
+    user, frame = work_object.user, work_object.frame
+    if work_object.moved_by is not None:  # whose user frame would not count
+        user, frame = IDENTITY, frame if user == IDENTITY else work_object.pose
+    frames = (pose_record(user), pose_record(frame))
     return (work_object.robot_held, moved_by is None, moved_by or "", *frames)

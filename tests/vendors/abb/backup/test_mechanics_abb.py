@@ -181,10 +181,18 @@ def test_axes_whose_place_in_targets_is_not_known() -> None:
     sections = dict(on_track())
     sections["JOINT"] = [one.replace("-logical_axis 7", "") for one in sections["JOINT"]]
     (found,) = made(sections).robots
-    assert found.robot is not None and not found.robot.external_axes
-    lacks = " / ".join(found.lacks)
-    assert "the axis of unit TRACK_1 is not known" in lacks
-    assert "unit STN1 is eax_b of robtargets" in lacks
+    assert found.robot is not None
+    (station,) = found.robot.external_axes
+    assert (station.name, station.number) == ("STN1", 2)
+    assert "the axis of unit TRACK_1 is not known" in " / ".join(found.lacks)
+
+
+def test_two_units_at_one_place_of_targets() -> None:
+    sections = dict(on_track())
+    sections["JOINT"] = [one.replace("axis 8", "axis 7") for one in sections["JOINT"]]
+    (found,) = made(sections).robots
+    assert found.robot is not None and len(found.robot.external_axes) == 1
+    assert "is eax_a of robtargets, and so is another one: it is left out" in found.lacks[-1]
 
 
 def test_coupled_and_calibrated_arms_and_their_loads() -> None:
