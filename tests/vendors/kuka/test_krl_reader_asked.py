@@ -346,3 +346,17 @@ def test_a_menu_in_a_structure_that_a_computer_writes_is_asked_for_and_answered(
 
 def turns(moves: Sequence[Move]) -> list[float]:
     return [round(degrees(move.target.joints[0])) for move in moves]  # type: ignore[union-attr]
+
+
+def test_a_shift_behind_a_place_that_nobody_knows_is_no_place(tmp_path: Path) -> None:
+    body = (
+        "DECL FRAME up\nDECL E6POS p\nup={X 0,Y 0,Z 200,A 0,B 0,C 0}\n"
+        "p={X 900,Y 0,Z 900,A 0,B 90,C 0}\n"
+    )
+    moves = "LIN FindPart(3):up\nLIN FindPart(3):cell[2]:up\nLIN FindPart(3):p\nLIN p:FindPart(3)\n"
+    program = read(body + START + moves, tmp_path)
+    assert [bool(move.open) for move in program.moves] == [False, True, True, False, False]
+    assert "FindPart" in program.moves[1].open
+    place = '"FindPart(3)" = "{X 900,Y 0,Z 700,A 0,B 90,C 0}"'
+    moves = read(body + START + "LIN FindPart(3):up\n", tmp_path, place).moves
+    assert moves[-1].target.pose.position == pytest.approx((1.1, 0, 0.7))  # type: ignore[union-attr]

@@ -115,6 +115,13 @@ def _is_frame(value: Value) -> bool:
     return value.type in POSES or (value.type == "" and bool(_COMPONENTS & value.fields.keys()))
 
 
+def _only_shifts(frame: Value) -> bool:
+    """Whether a frame turns nothing: behind a place that nobody knows, it leads away from there and
+    is no place itself."""
+    assert isinstance(frame, Struct)
+    return frame.type not in ("pos", "e6pos") and not any(map(frame.fields.get, "abc"))
+
+
 def _with_unknown(symbol: str, left: Value, right: Value) -> Value:
     """What can be said although one operand is not known."""
     for known in (left, right):
@@ -138,7 +145,7 @@ def _held(symbol: str, left: Value, right: Value) -> Value | None:
             other = known[1 - k]
             if _is_number(other) and symbol in "+-*":
                 known[k] = 0
-            elif _is_frame(other) and symbol == ":":
+            elif _is_frame(other) and symbol == ":" and not (k == 0 and _only_shifts(other)):
                 known[k] = null_frame()
     if any(isinstance(value, Unknown) for value in known) or symbol not in _HOLDING:
         return None
