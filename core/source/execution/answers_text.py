@@ -69,6 +69,11 @@ def grouped(questions: Sequence[Question]) -> list[str]:
     return told
 
 
+def _name(question: Question) -> str:
+    """Of the file in which it is asked."""
+    return question.span.file.replace("\\", "/").rpartition("/")[2]
+
+
 def counts(questions: Sequence[Question]) -> Counter[QuestionKind]:
     """How many of each kind nobody has answered."""
     return Counter(q.kind for q in questions if not q.answered)
@@ -81,8 +86,7 @@ def _entry(question: Question, several: bool) -> list[str]:
         question: what is asked.
         several: whether the program has several files.
     """
-    file = question.span.file.replace("\\", "/").rpartition("/")[2]
-    where = f"{file}:{question.span.line}" if several else f"line {question.span.line}"
+    where = f"{_name(question)}:{question.span.line}" if several else f"line {question.span.line}"
     times = f"asked {question.count} times" if question.count > 1 else ""
     told = [question.type, question.meanwhile, times]
     about = "; ".join(" ".join(part.split()) for part in told if part)
