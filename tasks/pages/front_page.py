@@ -86,9 +86,12 @@ def _facts(made: ProgramFront) -> dict[str, str]:
     facts = {"given": f"{made.given.duration:.3f} s", "programs": str(len(made.points))}
     if made.points:
         first, last = made.points[0], made.points[-1]
-        facts["from"] = f"{first.duration:.3f} s"
         saved = 100.0 * (last.energy / abs(made.given.energy) - 1.0)
-        facts["to"] = f"{last.duration:.3f} s with {saved:+.0f} % energy"
+        told = f"{last.duration:.3f} s with {saved:+.0f} % energy"
+        if len(made.points) == 1:
+            return {**facts, "found": told}
+        facts["from"] = f"{first.duration:.3f} s"
+        facts["to"] = told
     return facts
 
 

@@ -33,6 +33,7 @@ export const VIEWS = {
   top: [0, -0.001, 1],
 };
 const LOOKS = 8; // places of the arm that a view holds
+const SNUG = 0.95; // of what holds all corners of the box round the arms, which are empty
 const BACKGROUND = { light: 0xf6f7f8, dark: 0x15181b };
 
 /** One arm of one track. */
@@ -221,13 +222,28 @@ export class SceneView {
     return box;
   }
 
+  /** How far from its centre a camera holds a box, looking against a direction. */
+  distance(box, towards) {
+    const right = this.camera.up.clone().cross(towards).normalize();
+    const up = towards.clone().cross(right);
+    const tall = Math.tan((Math.PI / 360) * this.camera.fov);
+    const wide = tall * this.camera.aspect;
+    const half = box.getSize(new Vector3()).multiplyScalar(0.5);
+    let away = 0;
+    for (let k = 0; k < 8; k += 1) {
+      const corner = new Vector3(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
+      const off = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / tall);
+      away = Math.max(away, off + corner.dot(towards));
+    }
+    return SNUG * away;
+  }
+
   look(view) {
     const box = this.bounds();
     const centre = box.getCenter(new Vector3());
-    const radius = 0.5 * box.getSize(new Vector3()).length();
-    const aspect = Math.min(this.camera.aspect, 1.35);
-    const away = (1.02 * radius) / Math.sin((Math.PI / 360) * this.camera.fov) / Math.max(0.75, aspect);
-    this.camera.position.copy(centre).addScaledVector(new Vector3(...VIEWS[view]).normalize(), away);
+    const towards = new Vector3(...VIEWS[view]).normalize();
+    const away = this.distance(box, towards);
+    this.camera.position.copy(centre).addScaledVector(towards, away);
     this.controls.target.copy(centre);
     this.camera.near = away / 200;
     this.camera.far = away * 20;
