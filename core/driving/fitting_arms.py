@@ -68,8 +68,8 @@ class TakenPlaces:
         return len(self.postures) + len(self.flanges)
 
     def missed_by(self, vendor: Vendor, robot: Robot) -> bool:
-        """Whether a robot cannot take one of them."""
-        return self._fit(vendor, robot) is None
+        """Whether a robot cannot take one of them; nobody says of one on a track or at a table."""
+        return not robot.external_axes and self._fit(vendor, robot) is None
 
     def taken_by(self, vendor: Vendor, arms: Iterable[Listed]) -> list[Listed]:
         """The arms of a vendor that can take all of them: first those that have the most of the

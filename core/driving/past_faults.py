@@ -184,6 +184,12 @@ class _Drive:
         if cause not in _OF_PLACES:
             return ""
         asked = self._assumed.get(move)
+        frame = self._program.moves[move].work_object
+        if not asked and frame.not_followed is not None:
+            return (
+                f"; {frame.name} is taken to stand where it is declared, though "
+                f"{frame.not_followed} moves it, which may well be why"
+            )
         if not asked:
             return ""
         be = "is" if len(asked) == 1 else "are"

@@ -154,3 +154,33 @@ def test_the_recorder_logs_axes_that_are_there(tmp_path: Path) -> None:
     logged = "".join(_line_routine(options))
     assert len(_columns(options)) == 8
     assert "eax_a" not in logged and "eax_b*pi/180" in logged and "eax_c*pi/180" in logged
+
+
+HELD = """MODULE partner
+TASK PERS wobjdata wInHand:=[FALSE,FALSE,"{unit}",[[0,0,0],[1,0,0,0]],[[0,0,40],[1,0,0,0]]];
+PROC main()
+MoveAbsJ [[0,-10,20,0,60,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;
+MoveJ [[5000,0,90],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0\\WObj:=wInHand;
+ENDPROC
+ENDMODULE
+"""
+
+
+@pytest.mark.parametrize(
+    ("unit", "told"),
+    [
+        ("ROB_2", "another robot, by its name"),
+        ("DREH1", "if tilt or STN1 carries it, call that axis so in the cell file"),
+    ],
+)
+def test_a_frame_that_something_else_moves_is_said_where_a_target_is_out_of_reach(
+    tmp_path: Path, unit: str, told: str
+) -> None:
+    program = described(tmp_path, HELD.replace("{unit}", unit))
+    (note,) = [note.message for note in program.notes if "wInHand" in note.message]
+    assert told in note and ("[external_axis." in note) is False
+    with pytest.raises(FlybyError) as caught:
+        flyby.emulate(program)
+    said = str(caught.value)
+    assert f"wInHand is taken to stand where it is declared, though {unit} moves it" in said
+    assert "of the catalogue" not in said  # of an arm at a table nobody can say

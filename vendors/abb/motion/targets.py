@@ -64,6 +64,8 @@ ROUNDING = 2e-5
 """What five written decimals leave of a quaternion's unit length: not worth a note."""
 
 UNDEFINED_MASS = -1.0
+_ROBOT = "rob_"
+"""What names of arms begin with, among mechanical units."""
 
 T = TypeVar("T")
 
@@ -134,14 +136,10 @@ class Converter:
             )
         followed = value[1] or self._carries(value[2])
         if not followed:
-            own = tables(self._robot)
-            cell = f"; if {own} carries it, call that axis so in the cell file" if own else ""
-            cell = cell or cell_axis(value[2], self._robot)
             self._notes.once(
                 f"carrier of {name}",
-                f"work object {name} is moved by {value[2]}, which is no axis of this robot (a "
-                "conveyor, or a unit of another task): it is taken to stand where it is "
-                f"declared{cell}",
+                f"work object {name} is moved by {value[2]}, which is no axis of this robot "
+                f"{self._unit_in_words(value[2])}",
                 expression.span,
             )
 
@@ -162,6 +160,19 @@ class Converter:
             ("work object", name, value),
             lambda: self._made_of(make, value, WOBJDATA, name, expression.span),
         )
+
+    def _unit_in_words(self, unit: str) -> str:
+        """What a mechanical unit may be that the robot has not, and what is to be done."""
+        stands = "it is taken to stand where it is declared"
+        if unit.casefold().startswith(_ROBOT):
+            return (
+                f"(another robot, by its name): {stands}; paths in a frame that another robot "
+                "moves are not driven yet, so what these moves do is not known"
+            )
+        own = tables(self._robot)
+        cell = f"; if {own} carries it, call that axis so in the cell file" if own else ""
+        cell = cell or cell_axis(unit, self._robot)
+        return f"(a conveyor, or a unit of another task): {stands}{cell}"
 
     def _carries(self, unit: str) -> bool:
         """Whether the robot has an external axis of that name, or nobody knows."""
