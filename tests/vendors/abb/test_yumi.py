@@ -248,3 +248,37 @@ def test_translated_to_it_targets_state_an_arm_angle(tmp_path) -> None:
     for k, move in enumerate((joint, line), 1):
         at = run.robot.flange_pose(end(run, k)).matrix()
         np.testing.assert_allclose(at, move.target.pose.matrix(), atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "joints",
+    [
+        (-23, -95, 40, 52, -38, 124, 62),
+        (71, -104, 6, -74, 21, 118, -47),
+        (50, -30, -36, -37, 56, 85, -81),
+    ],
+)
+def test_beside_a_cfx_of_several_digits_quadrants_are_cut_off(read, joints) -> None:
+    """Rounded quadrants of these joint values differ from those that are cut off."""
+    robot = find_robot(RIGHT)
+    q = np.radians(joints)
+    label = ABB.label(robot, q)
+    cut = [math.floor(joints[axis] / 90) for axis in (0, 3, 5)]
+    assert [label.cf1, label.cf4, label.cf6] != cut
+    pose = robot.flange_pose(q)
+    place, turn = (
+        ",".join(f"{v:.9g}" for v in values)
+        for values in (np.multiply(pose.position, 1e3), pose.quaternion)
+    )
+    angle = math.degrees(robot.arm_angle(q))
+    target = (
+        f"[[{place}],[{turn}],[{','.join(map(str, cut))},11],[{angle:.9g},9E9,9E9,9E9,9E9,9E9]]"
+    )
+    home = "[[0,-130,30,0,40,0],[-135,9E9,9E9,9E9,9E9,9E9]]"
+    run = flyby.emulate(
+        read(module(f"MoveAbsJ {home},v500,fine,tool0;", f"MoveJ {target},v500,fine,tool0;"))
+    )
+    np.testing.assert_allclose(np.degrees(end(run, 1)), joints, atol=1e-3)
+    assert not [note for note in run.notes if "configuration" in note.message]
+    again = ABB.label(robot, end(run, 1))
+    assert run.program.moves[1].target.configuration.mismatch(again) == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -49,6 +50,8 @@ class AbbConfiguration:
         undecided: of a solution's label: bits of cfx whose quantity is about zero.
         seven: whether the arm has seven axes, of which newer controllers write a cfx of up to four
             digits.
+        cut: of a solution's label of such an arm: for axes 1, 4 and 6 the quadrants that count
+            beside such a cfx.
     """
 
     cf1: int
@@ -58,6 +61,7 @@ class AbbConfiguration:
     edges: tuple[bool, bool, bool] = field(default=(False, False, False), compare=False, repr=False)
     undecided: int = field(default=0, compare=False, repr=False)
     seven: bool = field(default=False, compare=False, repr=False)
+    cut: tuple[tuple[int, ...], ...] = field(default=(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if not 0 <= self.cfx <= (_GREATEST_OF_SEVEN if self.seven else _ALL):
@@ -103,15 +107,16 @@ class AbbConfiguration:
         """Quadrants between axes 1, 4 and 6; number of bits in which cfx differs."""
         if not isinstance(label, AbbConfiguration):
             raise InputError(f"an ABB configuration cannot be compared with {label}")
-        pairs = zip(self._quadrants(), label._quadrants(), strict=True)
+        digits = max(self.cfx, label.cfx) > _ALL
+        pairs = zip(self._quadrants(digits), label._quadrants(digits), strict=True)
         turns = [min(abs(a - b) for a in mine for b in its) for mine, its in pairs]
-        decided = _ALL & ~(self.undecided | label.undecided)
-        if max(self.cfx, label.cfx) > _ALL:
-            decided = 0
+        decided = 0 if digits else _ALL & ~(self.undecided | label.undecided)
         return turns, ((self.cfx ^ label.cfx) & decided).bit_count()
 
-    def _quadrants(self) -> list[tuple[int, ...]]:
-        """For axes 1, 4 and 6 the quadrants that fit."""
+    def _quadrants(self, digits: bool) -> Sequence[tuple[int, ...]]:
+        """For axes 1, 4 and 6 the quadrants that fit, beside a cfx of several digits or not."""
+        if digits and self.cut:
+            return self.cut
         quadrants = zip((self.cf1, self.cf4, self.cf6), self.edges, strict=True)
         return [(cf, cf - 1) if edge else (cf,) for cf, edge in quadrants]
 
@@ -121,8 +126,9 @@ def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
     for those of ABB with seven.
 
     Of those cf1, cf4 and cf6 are the quarter turns that axes 1, 4 and 6 are nearest to, and 1 in
-    cfx that axis 5 is negative: so count the robtargets of programs for the IRB 14000
-    (docs/reference/robots.md). The rest of their cfx is not looked at, nor the whole of it where
+    cfx that axis 5 is negative: so count the robtargets of programs for the IRB 14000, but those
+    whose cfx has several digits, which count quadrants as on six axes (docs/reference/robots.md).
+    The rest of their cfx is not looked at, nor the whole of it where
     the arm has fewer motors, and then one posture, or no spherical wrist (CRB 15000, IRB 5500),
     where no source says what it counts.
     """
@@ -134,6 +140,7 @@ def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
     cf1, cf4, cf6 = (math.floor(quarter + EDGE_ANGLE / _QUADRANT) for quarter in quarters)
     edges = [abs(v - round(v)) * _QUADRANT <= EDGE_ANGLE for v in quarters]
     at = None if seven else posture(robot, q)
+    cut = tuple(_cut(float(q[axis]) / _QUADRANT) for axis in (0, 3, 5)) if seven else ()
     bits: tuple[tuple[float, float, int], ...] = ()
     left_open, usual = _ALL, 0
     if seven:
@@ -154,4 +161,11 @@ def label(robot: Robot, q: NDArray[np.float64]) -> AbbConfiguration | None:
         edges=(edges[0], edges[1], edges[2]),
         undecided=left_open + sum(bit for value, edge, bit in bits if abs(value) <= edge),
         seven=seven,
+        cut=cut,
     )
+
+
+def _cut(quarter: float) -> tuple[int, ...]:
+    """The quadrants of an angle in quarter turns: two where it is about where they meet."""
+    edge = EDGE_ANGLE / _QUADRANT
+    return tuple(sorted({math.floor(quarter - edge), math.floor(quarter + edge)}))
