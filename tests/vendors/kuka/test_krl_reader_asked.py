@@ -360,3 +360,14 @@ def test_a_shift_behind_a_place_that_nobody_knows_is_no_place(tmp_path: Path) ->
     place = '"FindPart(3)" = "{X 900,Y 0,Z 700,A 0,B 90,C 0}"'
     moves = read(body + START + "LIN FindPart(3):up\n", tmp_path, place).moves
     assert moves[-1].target.pose.position == pytest.approx((1.1, 0, 0.7))  # type: ignore[union-attr]
+
+
+def test_a_count_that_begins_with_an_answer_ends_its_loop(tmp_path: Path) -> None:
+    body = (
+        START
+        + "LOOP\nPTP {A1 5}\nlayer=layer+1\nIF layer==3 THEN\nrow=row+1\nlayer=1\nENDIF\n"
+        + "IF row==2 THEN\nGOTO done\nENDIF\nPTP {A1 7}\nENDLOOP\ndone:\nPTP {A1 9}\n"
+    )
+    program = read(body, tmp_path, "layer = 1\nrow = 0")
+    assert turns(program.moves) == [0, 5, 7, 5, 7, 5, 7, 5, 9]
+    assert "endless" not in said(program)

@@ -73,16 +73,21 @@ class KrlHost:
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
         """See `core.source.execution.flow.Host.snapshot`."""
+        scope = self._scopes[-1]
+        looked = {
+            name: self._data.find(name, scope)
+            for name in sorted(written if names is None else names)
+        }
+        absent = [name for name, cell in looked.items() if cell is None]
         if names is None:
             cells = self._data.named(written, self._scopes)
         else:
-            found = (self._data.find(name, self._scopes[-1]) for name in sorted(names))
-            cells = [cell for cell in found if cell is not None]
+            cells = [cell for cell in looked.values() if cell is not None]
         for cell in cells:
             # What has not been read yet is evaluated: else its first read would be a change.
             with suppress(SourceError):
                 self._names.settled(cell)
-        return Snapshot(cells)
+        return Snapshot(cells, absent, lambda name: self._data.find(name, scope))
 
     def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
         """See `core.source.execution.host.Host`: all but a routine's own data."""
