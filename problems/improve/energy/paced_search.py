@@ -18,7 +18,7 @@ from ...reading_back import ReadBack
 from ..nonsmooth_sqp import Memory, SearchEffort, search
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
 from ..waypoints import Effort
-from ..waypoints.aim import FINE, Aim, with_room
+from ..waypoints.aim import FINE, Aim, driven_moves, with_room
 from ..waypoints.block_problem import BlockProblem
 from ..waypoints.blocks import MoveBlock
 from ..waypoints.variables import ProgramVariables
@@ -238,6 +238,7 @@ class PacedSearch:
             shape,
             self.variables,
             lambda own: self.controller.plan(self._written(np.concatenate([own, y]))),
+            driven_moves(self.controller.plan, self.variables, shape),
         )
         return np.concatenate([room, y])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from ....core.errors import MotionError
 from ....core.motion.emulator.run import Run
 from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.motion.path.path import Path
+from ....core.program.program import Program
 from ..rounding import STEP
 from .block_emulation import crowd, rooms_of
 from .variables import ProgramVariables
@@ -62,17 +63,22 @@ class Aim:
 
 
 def with_room(
-    x: FloatArray, variables: ProgramVariables, planned: Callable[[FloatArray], Path]
+    x: FloatArray,
+    variables: ProgramVariables,
+    planned: Callable[[FloatArray], Path],
+    moves: Set[int],
 ) -> FloatArray:
     """Values with zones small enough for their neighbours when all is rounded.
 
-    Rounded points are a little nearer to each other or further apart than those searched for.
+    Rounded points are a little nearer to each other or further apart than those searched for. A
+    controller may leave out a waypoint whose zone then overlaps its neighbour's.
 
     Args:
         x: (n,) of the variables.
         variables: points and zones.
         planned: the path of the program that is written with such values; a MotionError of it
             leaves all as it is.
+        moves: indices of those that are driven before rounding.
     """
     shrunk = x
     for step in _STEPS:
@@ -80,9 +86,22 @@ def with_room(
             path = planned(shrunk)
         except MotionError:
             return x
-        tight = {room.corner for room in rooms_of(path) if room.left.value < -_TIGHT}
+        corners = path.route.zone_moves
+        tight = {corners[room.corner] for room in rooms_of(path) if room.left.value < -_TIGHT}
+        for move in moves - set(path.route.moves):
+            tight |= {move - 1, move, move + 1}
         if not tight:
             break
-        for corner in tight:
-            shrunk = variables.with_smaller_zone(shrunk, path.route.zone_moves[corner], step)
+        for move in tight:
+            shrunk = variables.with_smaller_zone(shrunk, move, step)
     return shrunk
+
+
+def driven_moves(
+    plan: Callable[[Program], Path], variables: ProgramVariables, x: FloatArray
+) -> Set[int]:
+    """Indices of the moves that are driven at some values; none where they cannot be driven."""
+    try:
+        return frozenset(plan(variables.applied(x)).route.moves)
+    except MotionError:
+        return frozenset()

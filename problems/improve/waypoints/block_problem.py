@@ -19,6 +19,8 @@ from ....core.errors import MotionError
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.gradients.derivatives import Derivatives
 from ....core.motion.gradients.sensitivity import PathPlaces
+from ....core.motion.timing.timing import Timing
+from ....core.program.program import Program
 from .block_emulation import DrivenBlock, Driver
 from .blocks import MoveBlock
 from .options import WaypointTask
@@ -53,6 +55,39 @@ class EvaluatedBlock:
     distances: tuple[Distances, ...]
 
 
+@dataclass(frozen=True)
+class BlockCost:
+    """The objective of a block: of time and energy the shares of what it takes as it was given.
+
+    Args:
+        controller: that drives it.
+        weight: of time.
+        given: s, and energy where it counts, as it was given.
+    """
+
+    controller: Controller
+    weight: float
+    given: tuple[float, float]
+
+    @classmethod
+    def beside(
+        cls, controller: Controller, weight: float, program: Program, timing: Timing
+    ) -> BlockCost:
+        """The objective beside a driven program."""
+        return cls(controller, weight, cls(controller, weight, (1.0, 1.0)).amounts(program, timing))
+
+    def of(self, program: Program, timing: Timing) -> float:
+        """The objective of a driven program."""
+        time, energy = self.amounts(program, timing)
+        return self.weight * time / self.given[0] + (1.0 - self.weight) * energy / self.given[1]
+
+    def amounts(self, program: Program, timing: Timing) -> tuple[float, float]:
+        """Time, and energy where it counts."""
+        if self.weight == 1.0:
+            return timing.duration, 1.0
+        return timing.duration, self.controller.energy(program, timing).value
+
+
 class BlockProblem:
     """A block as a `nonsmooth_sqp.SearchModel`.
 
@@ -83,14 +118,13 @@ class BlockProblem:
     ) -> None:
         self.block = block
         self._driver = Driver(controller, block, density, more)
-        self._controller = controller
         variables = block.variables
         self.lower, self.upper, self.scale = variables.lower, variables.upper, variables.scale
-        self._weight = task.time_weight
         first = self._driver.drive(variables.start)
         if first is None:
             raise MotionError("the program cannot be driven as it is", block.first)
-        self._time, self._energy = self._costs(first)
+        weight = task.time_weight
+        self._cost = BlockCost.beside(controller, weight, first.program, first.timing)
         self._watched = watch(first, self._driver, scenes, clearance, least)
         self._points: tuple[PointRow, ...] = point_rows(block, first.path, task)
         limits = controller.robot.limits
@@ -103,10 +137,7 @@ class BlockProblem:
         drive = self._driver.drive(np.clip(x, self.lower, self.upper))
         if drive is None:
             return None
-        time, energy = self._costs(drive)
-        objective = self._weight * time / self._time
-        if self._weight < 1.0:
-            objective += (1.0 - self._weight) * energy / self._energy
+        objective = self._cost.of(drive.program, drive.timing)
         found = tuple(
             watched.scene.distances(
                 drive.q[watched.places],
@@ -116,12 +147,6 @@ class BlockProblem:
             for watched in self._watched
         )
         return EvaluatedBlock(drive.x, objective, self._constraints(drive, found), drive, found)
-
-    def _costs(self, drive: DrivenBlock) -> tuple[float, float]:
-        if self._weight == 1.0:
-            return drive.timing.duration, 1.0
-        made = self._controller.energy(drive.program, drive.timing)
-        return drive.timing.duration, made.value
 
     def _constraints(self, drive: DrivenBlock, found: tuple[Distances, ...]) -> FloatArray:
         parts = [
@@ -151,10 +176,11 @@ class BlockProblem:
         drive, variables = point.drive, self.block.variables
         made = Derivatives(drive.program, drive.timing)
         total = np.zeros(variables.size)
-        if self._weight > 0.0:
-            total += self._weight / self._time * variables.gradient(made.duration(), point.x)
-        if self._weight < 1.0:
-            share = (1.0 - self._weight) / self._energy
+        weight, (time, energy) = self._cost.weight, self._cost.given
+        if weight > 0.0:
+            total += weight / time * variables.gradient(made.duration(), point.x)
+        if weight < 1.0:
+            share = (1.0 - weight) / energy
             total += share * variables.gradient(made.energy(), point.x)
         return total
 

@@ -18,14 +18,15 @@ from ....core.motion.emulator.run import Run
 from ....core.program.program import Program
 from ..nonsmooth_sqp import Memory, SearchEffort, search, violation
 from ..solve_round_verify import ProgramFeasibility, solve_round_verify
-from .aim import FINE, Aim, with_room
-from .block_problem import BlockProblem
+from .aim import FINE, Aim, driven_moves, with_room
+from .block_problem import BlockCost, BlockProblem
 from .blocks import MoveBlock
 from .options import Effort, WaypointTask
 
 FINE_BOX = 0.2
 """First trust box of a refinement."""
-_FINE_ITERATIONS = 25
+FINE_ITERATIONS = 25
+"""Of a refinement."""
 _AGAIN_ITERATIONS, _AGAIN_BOX = 10, 0.05
 """Of a refinement with a wider margin, which begins near its end."""
 FEASIBLE = 1e-4
@@ -88,14 +89,14 @@ class Job:
     Args:
         block: index of the block.
         memory: where to begin, and with what.
-        iterations: of a search, at most.
+        iterations: of a search or a refinement, at most.
         stage: what is to be done.
         refined: what is to be proven.
     """
 
     block: int
     memory: Memory
-    iterations: int = _FINE_ITERATIONS
+    iterations: int = FINE_ITERATIONS
     stage: JobStage = JobStage.SEARCH
     refined: Answer | None = None
 
@@ -111,6 +112,8 @@ class Answer:
         violation: largest one there.
         finished: whether the search came to its end.
         memory: to go on with.
+        fell: how far the objective has fallen; unknown, and infinite, from where the clearance was
+            not kept.
         certificate: of the driven block, if it was to be proven.
     """
 
@@ -120,6 +123,7 @@ class Answer:
     violation: float
     finished: bool
     memory: Memory
+    fell: float = np.inf
     certificate: Certificate | None = None
 
     @property
@@ -138,7 +142,7 @@ def work(shared: Shared, job: Job) -> Answer:
     if job.stage is JobStage.SEARCH:
         return _searched(shared.searching, shared, job, SearchEffort(job.iterations), Aim(margin))
     if job.stage is JobStage.REFINE:
-        settings = SearchEffort(_FINE_ITERATIONS, FINE_BOX)
+        settings = SearchEffort(job.iterations, FINE_BOX)
         return _searched(shared.controller, shared, job, settings, Aim(margin, FINE))
     if shared.task.rounding.predefined:
         shared, job = _with_chosen_zones(shared, job)
@@ -183,8 +187,9 @@ def _searched(
         # A pose target is singular where the search stands: no derivatives, no way on.
         return Answer(job.block, start.x, start.objective, violation(start), True, memory)
     point = found.point
+    fell = start.objective - point.objective if violation(start) <= FEASIBLE else np.inf
     return Answer(
-        job.block, point.x, point.objective, found.violation, found.finished, found.memory
+        job.block, point.x, point.objective, found.violation, found.finished, found.memory, fell
     )
 
 
@@ -222,10 +227,9 @@ class _Refined:
         if not shared.task.rounding.predefined:
             # Predefined: the next smaller zone would be far smaller; to be cut by a hair does no
             # harm.
-            variables = shared.blocks[job.block].variables
-            room = with_room(
-                answer.x, variables, lambda x: shared.controller.plan(self._written(x))
-            )
+            variables, plan = shared.blocks[job.block].variables, shared.controller.plan
+            moves = driven_moves(plan, variables, answer.x)
+            room = with_room(answer.x, variables, lambda x: plan(self._written(x)), moves)
             answer = replace(answer, x=room)
         self.job, self.answer = replace(job, memory=answer.memory), answer
         return self._written(answer.x) if np.isfinite(answer.objective) else None
@@ -235,13 +239,23 @@ class _Refined:
         self.left = 0
 
     def accepted(self, run: Run, certificate: Certificate | None) -> bool:
-        """Whether it is proven."""
+        """Whether it is proven. Its objective is then that of the rounded program."""
         assert self.answer is not None
         assert certificate is not None
-        self.answer = replace(self.answer, certificate=certificate)
+        objective = self._cost.of(run.program, run.timing)
+        self.answer = replace(self.answer, certificate=certificate, objective=objective)
         if not certificate.proven:
             self.aim = self.aim.after(run, certificate, self.shared.clearance)
         return certificate.proven
+
+    @cached_property
+    def _cost(self) -> BlockCost:
+        """The objective."""
+        shared = self.shared
+        variables = shared.blocks[self.job.block].variables
+        given = variables.applied(variables.start)
+        timing = shared.controller.stamp(given, shared.controller.plan(given))
+        return BlockCost.beside(shared.controller, shared.task.time_weight, given, timing)
 
     def _written(self, x: FloatArray) -> Program:
         shared = self.shared

@@ -1,9 +1,9 @@
 """The best proven values of every block: searches from many starts, refined and certified.
 
-1. Short searches from every start, at few places of the path; the most promising ones go on, in
-   several rounds.
+1. Short searches from every start, at few places of the path. They race: in rounds, after each of
+   which only the most promising ones go on.
 2. Generations of variations of the best path of each block: neighbouring local optima are often
-   better.
+   better. A block of which a generation finds nothing better has no further ones.
 3. The best of these are refined at many places.
 4. They are proven between places too, the best first; a candidate that cannot be proven aims at a
    wider margin and is tried again. No others are tried once one is proven that is better.
@@ -12,20 +12,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
+
+import numpy as np
 
 from ....core.worker_pool import WorkerPool, worker_pool
 from ..nonsmooth_sqp import Memory
 from ..progress import Progress, Report
-from .block_search import FEASIBLE, FINE_BOX, Answer, Job, JobStage, Shared, work
+from .block_search import FEASIBLE, FINE_BOX, FINE_ITERATIONS, Answer, Job, JobStage, Shared, work
 from .starts import starting_points, variations
 
-ROUNDS = ((14, 0.5), (14, 0.5))
-"""Iterations of a round, and the share of the searches that go on after it."""
+ROUNDS = ((14, 0.5), (10, 1.0), (10, 1.0), (10, 1.0))
+"""Iterations of a round, and the share of its searches that go on after it if they may win."""
+_NEAR_ROUNDS = ((14, 1.0),)
+"""The same of variations,"""
+_FINE_ROUNDS = ((10, 1.0),)
+"""and of refinements."""
 _LEAST = 3
-"""Searches of a block that go on at least, and those that are refined."""
+"""Searches of a block that go on at least if they may win."""
+_FALLS = 3.0
+"""Falls of its last round that a search may still have before it: they mostly become smaller from
+round to round, not always."""
+_FINALS = 3
+"""Searches of a block that are refined."""
 _NEAR_ITERATIONS, _NEAR_BOX = 25, 0.6
-_ALIKE = 1e-6
+_ALIKE, _SAME_HEIGHT = 0.5, 2e-3
+"""Difference of all variables, in units of their scale, and share of the objective, up to which two
+searches are at the same optimum."""
+_BETTER = 1e-4
+"""Share of the objective by which a generation has to be better for another one."""
 _HOPELESS = 0.05
 """m of violation at which a searched candidate is not worth refining."""
 
@@ -91,15 +107,8 @@ class _Improvement:
         self.over = False
 
     def search(self, jobs: list[Job]) -> None:
-        """From every start, in rounds."""
-        for number in range(len(ROUNDS) + 1):
-            self._do(f"searching, round {number + 1}", jobs)
-            going = [] if self.over else _going_on(self._shared, number, self._found)
-            self._found = [answer for answer in self._found if answer not in going]
-            iterations = _iterations(self._shared, number + 1)
-            jobs = [Job(answer.block, answer.memory, iterations) for answer in going]
-            if not jobs:
-                return
+        """From every start."""
+        self._race("searching, round {}", jobs, ROUNDS)
 
     @property
     def searched(self) -> list[Answer | None]:
@@ -110,16 +119,20 @@ class _Improvement:
 
     def vary(self) -> None:
         """From near the best, in generations."""
+        blocks = list(range(len(self._shared.blocks)))
         for generation in range(self._shared.effort.generations):
-            if not self.over:
-                jobs = _varied(self._shared, self._found, generation)
-                self._do(f"varying, round {generation + 1}", jobs)
+            if self.over or not blocks:
+                return
+            before = self.searched
+            jobs = _varied(self._shared, [before[k] for k in blocks], generation)
+            self._race(f"varying, round {generation + 1}", jobs, _NEAR_ROUNDS)
+            blocks = [k for k in blocks if _bettered(before[k], self.searched[k])]
 
     def prove(self) -> None:
         """Refine the best, and prove the best of them that can be proven."""
         searched, self._found = self._found, []
-        count = 1 if self.over else _LEAST
-        self._do("refining", _finals(self._shared, searched, count))
+        count = 1 if self.over else _FINALS
+        self._race("refining", _finals(self._shared, searched, count), _FINE_ROUNDS)
         queue = sorted(self._found, key=Answer.rank)
         while queue:
             turn = {a.block: a for a in reversed(queue) if self._may_lead(a)}
@@ -131,7 +144,31 @@ class _Improvement:
         best = self.best[answer.block]
         return best is None or answer.objective < best.objective
 
-    def _do(self, stage: str, jobs: Sequence[Job]) -> None:
+    def _race(self, stage: str, jobs: list[Job], rounds: Sequence[tuple[int, float]]) -> None:
+        """Do searches in rounds, and keep what each of them comes to.
+
+        Args:
+            stage: what they are called; "{}" in it is the number of the round.
+            jobs: with all the iterations that they may take.
+            rounds: see `ROUNDS`; the last one takes the iterations that are left.
+        """
+        for number in range(len(rounds) + 1):
+            if not jobs:
+                return
+            left = jobs[0].iterations
+            most = rounds[number][0] if number < len(rounds) else left
+            turn = [replace(job, iterations=min(most, left)) for job in jobs]
+            made = self._do(stage.format(number + 1), turn)
+            if self.over or number == len(rounds) or left <= most:
+                return
+            going = _going_on(self._shared, made, self.searched, rounds[number][1])
+            self._found = [answer for answer in self._found if answer not in going]
+            jobs = [
+                replace(jobs[0], block=a.block, memory=a.memory, iterations=left - most)
+                for a in going
+            ]
+
+    def _do(self, stage: str, jobs: Sequence[Job]) -> list[Answer]:
         """Do jobs, and keep what comes of them."""
 
         def tell(done: int, answer: Answer) -> bool:
@@ -148,58 +185,86 @@ class _Improvement:
         before = len(self._found)
         answers = self._pool.answers(jobs, tell) if jobs else []
         # In the order of the jobs, whichever was done first.
-        self._found[before:] = [answer for answer in answers if answer is not None]
+        made = [answer for answer in answers if answer is not None]
+        self._found[before:] = made
+        return made
 
 
 def _first(shared: Shared) -> list[Job]:
-    """A short search from every start."""
+    """A search from every start."""
     return [
-        Job(k, Memory(x, 1.0), _iterations(shared, 0))
+        Job(k, Memory(x, 1.0), shared.effort.iterations)
         for k, block in enumerate(shared.blocks)
         for x in starting_points(block, shared.controller.plan(block.program), shared.effort)
     ]
 
 
-def _iterations(shared: Shared, number: int) -> int:
-    """Of round ``number``; the last one has all that are left."""
-    left = shared.effort.iterations - sum(iterations for iterations, _ in ROUNDS[:number])
-    return max(0, left if number >= len(ROUNDS) else min(left, ROUNDS[number][0]))
+def _going_on(
+    shared: Shared, made: Sequence[Answer], best: Sequence[Answer | None], share: float
+) -> list[Answer]:
+    """The searches of a round of which more is to be expected.
 
-
-def _going_on(shared: Shared, number: int, found: Sequence[Answer]) -> list[Answer]:
-    """The searches of which more is to be expected after round ``number``."""
-    if number == len(ROUNDS) or not _iterations(shared, number + 1):
-        return []
+    Args:
+        shared: the problem.
+        made: what the round's searches came to.
+        best: of each block, of all searches.
+        share: of each block's that may go on.
+    """
     going: list[Answer] = []
-    for k in range(len(shared.blocks)):
-        own = sorted((a for a in found if a.block == k), key=Answer.rank)
-        chosen = own[: max(_LEAST, round(ROUNDS[number][1] * len(own)))]
-        going += [answer for answer in chosen if not answer.finished]
+    for k, leader in enumerate(best):
+        own = sorted((a for a in made if a.block == k), key=Answer.rank)
+        own = _distinct(shared, own[: max(_LEAST, round(share * len(own)))])
+        going += [a for a in own if not a.finished and _may_win(a, leader)]
     return going
 
 
-def _varied(shared: Shared, found: Sequence[Answer], generation: int) -> list[Job]:
-    """Searches from near the best path of each block."""
-    jobs: list[Job] = []
-    for k, block in enumerate(shared.blocks):
-        best = min((a for a in found if a.block == k), key=Answer.rank, default=None)
-        if best is None or best.violation > FEASIBLE:
-            continue
-        jobs += [
-            Job(k, Memory(x, _NEAR_BOX), min(_NEAR_ITERATIONS, shared.effort.iterations))
-            for x in variations(block, best.x, shared.effort, generation)
-        ]
-    return jobs
+def _may_win(answer: Answer, leader: Answer | None) -> bool:
+    """Whether a search may yet overtake the best one, by how fast it falls."""
+    if leader is None or leader.violation > FEASIBLE:
+        return True
+    return answer.objective - _FALLS * answer.fell <= leader.objective
+
+
+def _distinct(shared: Shared, answers: Sequence[Answer]) -> list[Answer]:
+    """The first of those that are at the same optimum; ``answers`` are the best first."""
+    chosen: list[Answer] = []
+    for answer in answers:
+        if not any(_alike(shared, answer, other) for other in chosen):
+            chosen.append(answer)
+    return chosen
+
+
+def _alike(shared: Shared, answer: Answer, other: Answer) -> bool:
+    if max(answer.violation, other.violation) > FEASIBLE:
+        return answer.x is other.x
+    scale = shared.blocks[answer.block].variables.scale
+    apart = np.abs((answer.x - other.x) / scale).max(initial=0.0)
+    higher = answer.objective - other.objective
+    return bool(apart < _ALIKE and abs(higher) < _SAME_HEIGHT * other.objective)
+
+
+def _bettered(before: Answer | None, now: Answer | None) -> bool:
+    """Whether a generation has found something better."""
+    if before is None or now is None:
+        return now is not None
+    return now.objective < (1.0 - _BETTER) * before.objective
+
+
+def _varied(shared: Shared, best: Sequence[Answer | None], generation: int) -> list[Job]:
+    """Searches from near the best path of some blocks."""
+    return [
+        Job(a.block, Memory(x, _NEAR_BOX), min(_NEAR_ITERATIONS, shared.effort.iterations))
+        for a in best
+        if a is not None and a.violation <= FEASIBLE
+        for x in variations(shared.blocks[a.block], a.x, shared.effort, generation)
+    ]
 
 
 def _finals(shared: Shared, found: Sequence[Answer], count: int) -> list[Job]:
     """Refinements of the best ``count`` of each block, no two of them alike."""
     jobs: list[Job] = []
     for k in range(len(shared.blocks)):
-        chosen: list[Answer] = []
-        for answer in sorted((a for a in found if a.block == k), key=Answer.rank):
-            alike = any(abs(a.objective - answer.objective) < _ALIKE for a in chosen)
-            if answer.violation < _HOPELESS and not alike and len(chosen) < count:
-                chosen.append(answer)
-        jobs += [Job(k, Memory(a.x, FINE_BOX), stage=JobStage.REFINE) for a in chosen]
+        own = [a for a in found if a.block == k and a.violation < _HOPELESS]
+        chosen = _distinct(shared, sorted(own, key=Answer.rank))[:count]
+        jobs += [Job(k, Memory(a.x, FINE_BOX), FINE_ITERATIONS, JobStage.REFINE) for a in chosen]
     return jobs

@@ -24,6 +24,8 @@ from .oriented import OrientedPoint
 from .parts import JointPoint, PosePoint, ProgramPart, ZonePart, ZoneRadius, ZoneShare
 from .point_limits import PointBox, PointLimit
 
+_LEAST_SHARE = 0.5
+"""Share of a zone's lower bound that is left at least where rounding asks for a smaller one."""
 _LIMIT_MARGIN = 1e-6
 """rad or m that joint targets keep from the joints' limits."""
 
@@ -99,12 +101,14 @@ class ProgramVariables:
         return ProgramVariables(self.program, parts)
 
     def with_smaller_zone(self, x: FloatArray, move: int, by: float) -> FloatArray:
-        """Values x with a smaller zone at a move, by m or a share; x if it has none here."""
+        """Values x with a smaller zone at a move, by m or a share; x if it has none here. What
+        rounding takes from a leg that is no longer than the least zone is taken from the zone."""
         smaller = x.copy()
         for index, part in enumerate(self.parts):
             if isinstance(part, ZonePart) and move in part.moves:
-                smaller[self.offsets[index]] -= by
-        return np.asarray(np.maximum(smaller, self.lower))
+                own = self.offsets[index]
+                smaller[own] = max(smaller[own] - by, _LEAST_SHARE * self.lower[own])
+        return smaller
 
     def gradient(self, made: ProgramGradient, x: FloatArray) -> FloatArray:
         """(n,) from the gradient with respect to the program's parameters."""

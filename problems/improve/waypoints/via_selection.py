@@ -2,8 +2,9 @@
 
 It is done stretch by stretch, from stop to stop, while all others stay. A via point goes if a short
 search from there ends no higher without it. Then every one is cut in two (`doubling`) and searched
-from there, briefly; the best of these is searched longer, and stays if it is better by enough. What
-short searches come to is neither refined nor proven, so that only what may stay is.
+from there, briefly; the best of these is searched longer, or the second best, and stays if it is
+better by enough. What short searches come to is neither refined nor proven, so that only what may
+stay is.
 """
 
 from __future__ import annotations
@@ -28,11 +29,13 @@ _SERVES_NOTHING = 1e-4
 """Share of the stretch's cost that a via point must save to stay."""
 _PAYS = 2e-3
 """Share of the stretch's cost that one more must save."""
+_LONGER = 2
+"""Via points to cut in two that are searched longer, one after the other until one saves enough."""
 _MOST = 4
 """Via points more in a stretch."""
 _BRIEF = 30
 """Iterations of a search that only compares."""
-_ROUGH = 0.03
+_ROUGH = 0.02
 """Share of the stretch's cost by which more searching may better what a short search comes to."""
 
 
@@ -162,14 +165,13 @@ class _Turn:
     def _with_one(self, best: Counted) -> Counted | None:
         most = best.cost * (1.0 - _PAYS * self._share(best))
         tried = [(rough, i) for i in self._divisible(best) if (rough := self._divided(best, i))]
-        if not tried:
-            return None
-        rough, i = min(tried, key=lambda pair: pair[0].cost)
-        if not self._may_come_to(best, rough, most):
-            return None
         longer = replace(self.effort, starts=1, generations=min(1, self.effort.generations))
-        found = self._search(best, rough.program, _later(i), longer)
-        return found if found is not None and found.cost < most else None
+        for rough, i in sorted(tried, key=lambda pair: pair[0].cost)[:_LONGER]:
+            if self._may_come_to(best, rough, most):
+                found = self._search(best, rough.program, _later(i), longer)
+                if found is not None and found.cost < most:
+                    return found
+        return None
 
     def _may_come_to(self, best: Counted, rough: Rough, cost: float) -> bool:
         """Whether what a short search comes to may cost no more than that, once it is refined."""
