@@ -58,8 +58,9 @@ def fit_held(
 ) -> HeldFit:
     """Fit parameters to runs, as near to what was before as runs held back ask for.
 
-    Of all holds the strongest is taken than which the best is not clearly better. As the
-    runs that choose it judge it, too, the judgement is a little too good.
+    Of all holds that may be handed out, or of all if none may, the strongest is taken than which
+    the best is not clearly better. As the runs that choose it judge it, too, the judgement is a
+    little too good.
 
     Args:
         parameters: to be fitted.
@@ -87,7 +88,17 @@ def fit_held(
             gains = [one.gains.mean() for _, one in judged]
             if len(gains) - 1 - int(np.argmax(gains)) >= patience:
                 break
-    best = judged[int(np.argmax(gains))][1].gains
+    return chosen(judged)
+
+
+def chosen(judged: Sequence[tuple[HeldFit, Judgement]]) -> HeldFit:
+    """The fit, of several from the strongest hold to the weakest, that is handed out.
+
+    A weaker hold may gain more in most runs and still lose too much in one, which a stronger one
+    does not.
+    """
+    judged = [(made, one) for made, one in judged if one.better] or judged
+    best = max((one.gains for _, one in judged), key=np.mean)
     return next(made for made, one in judged if not is_gain(best - one.gains))
 
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from flyby.core.motion.model.provenance import FitRecord, Provenance
 from flyby.identification.fit import ParameterSet, fit, fit_held
-from flyby.identification.fit.holding import HOLDS, evened
-from flyby.identification.fit.judgement import is_gain
+from flyby.identification.fit.holding import HOLDS, HeldFit, chosen, evened
+from flyby.identification.fit.judgement import Judgement, is_gain
 from flyby.identification.fit.problem import Problem, Variables, first_nuisances
 from flyby.identification.fit.run_pool import RunPool
 from flyby.identification.fit.secants import RunDerivatives, carried
@@ -48,6 +48,23 @@ def test_of_the_same_robot_nothing_is_learnt() -> None:
     runs = [ready(logged(*one, k), TRUTH) for k, one in enumerate(KINDS)]
     held = fit_held(ParameterSet.named(TRUTH, TEXTS), runs)
     assert held.fit.model.tcp.beta[0] == pytest.approx(TRUTH.tcp.beta[0], abs=0.01)
+
+
+def judged(share: float, after: tuple[float, ...]) -> tuple[HeldFit, Judgement]:
+    before = (1.0,) * len(after)
+    made = Judgement(("a", "b", "c", "d", "e"), before, after, before, after, False)
+    return HeldFit(None, made, share), made  # type: ignore[arg-type]
+
+
+def test_a_hold_that_may_be_handed_out_is_taken_before_one_that_gains_more() -> None:
+    mild = judged(0.1, (0.9, 0.8, 0.7, 0.8, 0.7))
+    astray = judged(0.01, (5.0, 0.3, 0.3, 0.3, 0.3))
+    strong = judged(1.0, (0.99, 0.98, 0.99, 0.98, 0.99))
+    assert astray[1].gains.mean() > mild[1].gains.mean() and not astray[1].better
+    assert chosen([strong, mild, astray]).share == 0.1
+    assert chosen([astray]).share == 0.01
+    clear = judged(0.001, (0.3, 0.3, 0.2, 0.2, 0.3))
+    assert chosen([strong, mild, astray, clear]).share == 0.001
 
 
 def test_runs_that_nothing_explains_count_less() -> None:
