@@ -199,9 +199,15 @@ class MotionGrammar(FormGrammar):
         return Placed(goal, *self.frames.both(self.form, place, now))
 
     def kind_of(self, found: Found) -> object:
-        """What a point is beside its numbers."""
-        kind = found.groupdict().get("kind")
-        return None if kind is None else kind.upper()
+        """What a point is beside its numbers: its ``kind``; where tools and frames have numbers, a
+        `Place` with those of ``tool`` and ``frame``, as far as it names them."""
+        given = found.groupdict()
+        kind = (given.get("kind") or "").upper() or None
+        if self.frames is None:
+            return kind
+        tool, frame = (given.get(one) or "" for one in ("tool", "frame"))
+        numbers = (int(one) if one.isdecimal() else None for one in (tool, frame))
+        return Place(kind in self.joints, next(numbers), next(numbers))
 
     def set_frames(self, now: Situation) -> tuple[Tool, WorkObject]:
         """The tool and the frame that hold, called as the points that they were set to."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Se
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import islice
+from pathlib import PurePath
 from types import MappingProxyType
 
 from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
@@ -93,11 +94,17 @@ class LineProgram:
         return self.texts[span.file][span.start : span.end]
 
     def with_file(self, other: LineProgram) -> LineProgram:
-        """The same with the routines of another file; of two of one name the first counts."""
+        """The same with the routines of another file; of two of one name the first counts. Lines
+        of that file that stand in no routine are one that is called as the file is."""
+        unnamed = {PurePath(other.file).stem.lower(): other.routines[""]}
         return replace(
             self,
             texts={**other.texts, **self.texts},
-            routines={**other.routines, **self.routines},
+            routines={
+                **(unnamed if other.routines[""].statements else {}),
+                **other.routines,
+                **self.routines,
+            },
             points={**other.points, **self.points},
             data={**other.data, **self.data},
         )

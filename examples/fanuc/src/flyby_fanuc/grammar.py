@@ -9,7 +9,7 @@ from typing import ClassVar
 from flyby.core.errors import InputError
 from flyby.core.program.event import Event
 from flyby.core.program.target import JointTarget
-from flyby.core.source.lines.driving import MotionGrammar, Place, Placed
+from flyby.core.source.lines.driving import MotionGrammar, Placed
 from flyby.core.source.lines.expressions import Number, Spelling, parse
 from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.moves import counted_on
@@ -109,11 +109,8 @@ class Grammar(MotionGrammar):
         axes = [f"J{k}" for k in range(1, 7)] if joints else list("XYZWPR")
         if any(axis not in values for axis in axes):
             raise InputError("six coordinates should stand in it: X to R, or J1 to J6")
-        tool, frame = (
-            int(found[one]) if found[one] and found[one].upper() != "F" else None
-            for one in ("tool", "frame")
-        )
         label = LETTERS.read(found["config"]) if found["config"] else None
+        place = replace(self.kind_of(found), joints=joints, configuration=label)
         point = replace(self.datum(line, found, "name"), span=line.span)
         numbers = tuple(values[axis] for axis in axes)
-        return NumberedPoint(line.span, point, numbers, Place(joints, tool, frame, label))
+        return NumberedPoint(line.span, point, numbers, place)

@@ -157,6 +157,14 @@ def test_programs_that_are_called_are_read_and_what_they_call(tmp_path: Path) ->
     assert [Path(name).stem for name in files] == ["a", "B"]
 
 
+def test_lines_without_a_heading_are_called_as_their_file_is() -> None:
+    grammar = Small()
+    first = read_lines("CALL rest 2\nCALL more", "main.x", grammar, "small")
+    other = read_lines("WAIT A[1]\nROUTINE more\nWAIT 5", "dir/REST.x", grammar, "small")
+    program = run_lines(first.with_file(other), grammar, ReadOptions())
+    assert waits(program) == [2.0, 5.0]
+
+
 @given(names=st.lists(st.sampled_from([None, "tool3", "UTOOL[2]", "gun", "T99"]), max_size=8))
 def test_each_value_has_a_number_of_its_own(names: list[str | None]) -> None:
     numbering: Numbering[int] = Numbering("tools", 8)

@@ -1,4 +1,4 @@
-"""What golden texts leave out, or deny, is found: forms of lines, recordings, words."""
+"""The template's plugin: what its golden texts leave out, or deny, is found; it is translated."""
 
 from __future__ import annotations
 
@@ -9,12 +9,17 @@ from typing import Any
 
 import pytest
 
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.translation.hand_out import check_driven
+from flyby.core.translation.translate import translate
 from flyby.tasks.files.new_vendor import new_vendor
 from flyby.testing.conformance import VendorConformance
 
 from ..vendors.words import AbbWords
 
 ABB = Path(__file__).parents[1] / "vendors" / "abb" / "golden.toml"
+
+TRAY = Path(__file__).parents[2] / "examples" / "tray.mod"
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +67,27 @@ def test_what_is_there_is_not_denied(suite: Any, word: str) -> None:
     wrong = suite('none = ["tool"', f'none = ["{word}", "tool"')
     with pytest.raises(AssertionError, match=rf"none = \['{word}'\] denies what the golden texts"):
         wrong.test_golden_texts_cover_the_language()
+
+
+@pytest.mark.parametrize(
+    ("vendor", "robot"),
+    [("abb", "irb120-3-058"), ("kuka", "kr6-r700-sixx"), ("ur", "ur3e")],
+)
+def test_a_program_for_small_arms_is_translated_both_ways(
+    made: Any, vendor: str, robot: str
+) -> None:
+    """As the page on plugins has it, on arms from 0.5 m on."""
+    abb, small, own = find_vendor("abb"), find_robot("abb/irb120-3-058"), made[0]
+    arm, other = own.robot("arm-1"), find_vendor(vendor)
+    program = abb.read_file(TRAY, robot=small)
+    there = translate(program, (abb, small), (own, arm))
+    sources = own.write(there.program, arm, {"opaque": "comment"})
+    check_driven(there, sources, own, arm)
+    again = own.read(sources["Tray.omega"], "tray.omega", robot=arm)
+    back = translate(again, (own, arm), (other, other.robot(robot)))
+    written = other.write(back.program, other.robot(robot), {"opaque": "comment"})
+    check_driven(back, written, other, other.robot(robot))
+    assert len(back.program.moves) == len(program.moves) == 14
 
 
 def test_a_recorder_without_a_golden_recording_is_named(tmp_path: Path) -> None:
