@@ -75,17 +75,14 @@ class Data:
                 "answers",
                 statement.target.span,
             )
-        count = self._grammar.vectors[statement.target.word]
-        if not statement.terms:
-            unknown = Unknown(f"{name}, which is {statement.reason}")
-            for k in range(count):
-                self.values.put(element(name, k), unknown)
-            return
         try:
             found = [(sign, *self._read(term, name)) for sign, term in statement.terms]
+            why = f"{name}, which is {statement.reason}"
         except SourceError as error:
-            for k in range(count):
-                self.values.put(element(name, k), Unknown(str(error)))
+            found, why = [], str(error)
+        if not found:
+            for k in range(self._grammar.vectors[statement.target.word]):
+                self.values.put(element(name, k), Unknown(why))
             return
         if len(found) == 1 and found[0][0] == 1.0:
             _, numbers, sources = found[0]

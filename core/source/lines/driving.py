@@ -68,19 +68,21 @@ class Place:
 
 @dataclass(frozen=True)
 class FrameRegisters:
-    """The registers of a language; number 0 is the flange, and the robot's base. The program itself
-    may set them.
+    """The tools and frames of a language. The program itself may set them.
 
     Args:
         tool, frame: their words; ``""`` for none.
         beside: the file that states them, to be put beside programs; ``""`` where there is none.
         chosen: words of the settings that hold the numbers of those that a motion names none of.
+        numbered: whether they are called by numbers, 0 for the flange and the robot's base; else
+            there is one of each, called as the point that it was set to (`MotionGrammar.framed`).
     """
 
     tool: str
     frame: str = ""
     beside: str = ""
     chosen: tuple[str, str] = ("", "")
+    numbered: bool = True
 
     def both(self, form: PositionForm, place: Place, now: Situation) -> tuple[Tool, WorkObject]:
         """The tool and the work object of a place.
@@ -91,19 +93,24 @@ class FrameRegisters:
         Raises:
             InputError: nobody knows them.
         """
-        tool, frame = (
-            int(now.setting(word, 0.0)) if number is None else number
-            for word, number in zip(self.chosen, (place.tool, place.frame), strict=True)
-        )
-        at, user = self._pose(self.tool, tool, form, now), self._pose(self.frame, frame, form, now)
-        return (
-            Tool(f"{self.tool}[{tool}]", at) if tool else FLANGE,
-            WorkObject(f"{self.frame}[{frame}]", user=user) if frame else WORLD,
-        )
+        words = zip((self.tool, self.frame), self.chosen, (place.tool, place.frame), strict=True)
+        (tool, at), (frame, user) = (self._found(*one, form, now) for one in words)
+        return Tool(tool, at) if tool else FLANGE, WorkObject(frame, user=user) if frame else WORLD
 
-    def _pose(self, word: str, number: int, form: PositionForm, now: Situation) -> Pose:
+    def _found(
+        self, word: str, chosen: str, number: int | None, form: PositionForm, now: Situation
+    ) -> tuple[str, Pose]:
+        """What one is called, ``""`` for none, and where it is."""
+        if not self.numbered:
+            numbers = now.vector(word, None) if word else form.numbers(IDENTITY)
+            pose, kind = form.pose(numbers), getattr(numbers, "kind", None)
+            name = kind if isinstance(kind, str) else word.strip("$").lower()
+            return "" if pose == IDENTITY else name, pose
+        number = int(now.setting(chosen, 0.0)) if number is None else number
+        if not number:
+            return "", IDENTITY
         try:
-            return form.pose(now.vector(word, number)) if number else IDENTITY
+            return f"{word}[{number}]", form.pose(now.vector(word, number))
         except SourceError:
             offer = f"put {self.beside} beside the program, or " if self.beside else ""
             raise InputError(
@@ -142,8 +149,7 @@ class MotionGrammar(FormGrammar):
         count: numbers of a position.
         current: what stands for the numbers of where the running robot is, in capitals.
         override: word of the register that holds the speed override in %.
-        frames: tools and frames that have numbers.
-        tool_word, frame_word: of the tool and the frame that hold until others are set.
+        frames: tools and frames.
     """
 
     form: PositionForm
@@ -156,14 +162,11 @@ class MotionGrammar(FormGrammar):
     current: frozenset[str] = frozenset()
     override: str = ""
     frames: FrameRegisters | None = None
-    tool_word: str = ""
-    frame_word: str = ""
     helpers: ClassVar[frozenset[str]] = FormGrammar.helpers | {
         "placed",
         "place",
         "kind_of",
         "drive",
-        "set_frames",
     }
 
     @classmethod
@@ -177,15 +180,13 @@ class MotionGrammar(FormGrammar):
     def __init__(self) -> None:
         super().__init__()
         self._arc = ArcPoints()
-        words, held = [word for word in (self.tool_word, self.frame_word) if word], self.frames
-        known = [*words, *([held.tool, held.frame] if held is not None else ())]
-        if known:
+        if (held := self.frames) is not None:
             none = Numbers.of(self.form.numbers(IDENTITY))
-            chosen: Initial = {
-                (word, None): 0.0 for word in (held.chosen if held is not None else ())
-            }
-            self.vectors = {**self.vectors, **dict.fromkeys(known, len(none))}
-            self.initial = {**{(word, None): none for word in words}, **chosen, **self.initial}
+            words = [word for word in (held.tool, held.frame) if word]
+            first: Initial = {(word, None): none for word in words}
+            first = {(word, None): 0.0 for word in held.chosen} if held.numbered else first
+            self.vectors = {**self.vectors, **dict.fromkeys(words, len(none))}
+            self.initial = {**first, **self.initial}
 
     # ------------------------------------------------------- what a language may say otherwise
 
@@ -194,41 +195,26 @@ class MotionGrammar(FormGrammar):
         kind = numbers.kind
         place = kind if isinstance(kind, Place) else Place(kind in self.joints)
         goal = self.form.target(numbers[: self.count], place.joints, place.configuration)
-        if self.frames is None:
-            return Placed(goal, *self.set_frames(now))
-        return Placed(goal, *self.frames.both(self.form, place, now))
+        frames = self.frames
+        return Placed(goal, *(() if frames is None else frames.both(self.form, place, now)))
 
     def kind_of(self, found: Found) -> object:
         """What a point is beside its numbers: its ``kind``; where tools and frames have numbers, a
         `Place` with those of ``tool`` and ``frame``, as far as it names them."""
         given = found.groupdict()
         kind = (given.get("kind") or "").upper() or None
-        if self.frames is None:
+        if self.frames is None or not self.frames.numbered:
             return kind
         tool, frame = (given.get(one) or "" for one in ("tool", "frame"))
         numbers = (int(one) if one.isdecimal() else None for one in (tool, frame))
         return Place(kind in self.joints, next(numbers), next(numbers))
 
-    def set_frames(self, now: Situation) -> tuple[Tool, WorkObject]:
-        """The tool and the frame that hold, called as the points that they were set to."""
-        found = []
-        for word in (self.tool_word, self.frame_word):
-            numbers = now.vector(word, None) if word else Numbers()
-            pose = self.form.pose(numbers) if numbers else IDENTITY
-            name = numbers.kind if isinstance(numbers.kind, str) else word.strip("$").lower()
-            found.append((name or word.lower(), pose))
-        (tool, tcp), (frame, user) = found
-        return (
-            FLANGE if tcp == IDENTITY else Tool(tool, tcp),
-            WORLD if user == IDENTITY else WorkObject(frame, user=user),
-        )
-
     # --------------------------------------------------------------------------- its forms
 
     def framed(self, line: Line, found: Found) -> Said:
         """A tool or frame ``word``, else the tool, becomes a ``place``, ``values``, or none."""
-        given = found.groupdict()
-        datum = Datum(line.span, (given.get("word") or self.tool_word).upper(), None)
+        given, tool = found.groupdict(), self.frames.tool if self.frames is not None else ""
+        datum = Datum(line.span, (given.get("word") or tool).upper(), None)
         if given.get("place"):
             place = self.place(line, found, "place")
         elif given.get("values"):

@@ -161,17 +161,17 @@ class FormGrammar(Grammar):
         """A comment, or what says nothing that counts."""
         return None
 
-    def kept(self, line: Line, found: Found | None = None) -> Statement:
+    def kept(
+        self, line: Line, found: Found | None = None, why: str = "what it does is not known"
+    ) -> Kept:
         """What is not carried out."""
         word = re.match(r"[\w.$#]+", line.text)
         name = word[0] if word else line.text[:12]
-        stops = name.upper() in self.stopping
-        return Kept(line.span, name, "what it does is not known", stops)
+        return Kept(line.span, name, why, name.upper() in self.stopping)
 
     def harmless(self, line: Line, found: Found) -> Kept:
         """What does not move the robot, and is kept."""
-        word = re.match(r"[\w.$#]+", line.text)
-        return Kept(line.span, word[0] if word else line.text[:12], "it does not move the robot")
+        return self.kept(line, found, "it does not move the robot")
 
     def refused(self, line: Line, found: Found) -> Said:
         """What is known to move the robot, and is not emulated."""
@@ -263,15 +263,13 @@ class FormGrammar(Grammar):
                 condition = (
                     same if condition is None else Operation(one.span, "OR", (condition, same))
                 )
-        action = found.groupdict().get("action")
-        if action is None:
-            return _case(line, condition, begun)
-        body = self._action(line, found)
-        if not begun:
-            if condition is None:
-                raise InputError("a case with a value should stand first")
-            return If(line.span, condition, body)
-        return Otherwise(line.span, condition, body.statements[0])
+        inline = found.groupdict().get("action") is not None
+        body = self._action(line, found) if inline else None
+        if begun:
+            return Otherwise(line.span, condition, body.statements[0] if body else None)
+        if condition is None:
+            raise InputError("a case with a value should stand first")
+        return Open(line.span, condition) if body is None else If(line.span, condition, body)
 
     def counted(self, line: Line, found: Found) -> Statement:
         """A ``counter`` goes from ``first`` to ``last`` by ``step``, downwards if there is a group
@@ -332,14 +330,6 @@ class FormGrammar(Grammar):
         """An output ``target`` is turned on, or off if there is a group ``off``."""
         target = self.datum(line, found, "target")
         return Assign(line.span, target, Truth(line.span, not found.groupdict().get("off")))
-
-
-def _case(line: Line, condition: Expression | None, begun: bool) -> Statement:
-    if begun:
-        return Otherwise(line.span, condition)
-    if condition is None:
-        raise InputError("a case with a value should stand first")
-    return Open(line.span, condition)
 
 
 def _table(kind: type[FormGrammar]) -> list[tuple[str, re.Pattern[str], Form]]:

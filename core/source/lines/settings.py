@@ -255,11 +255,8 @@ class Settings:
     settings: tuple[Setting, ...] = ()
     zone: type[Radius] | ZoneKind = Radius
     flying: str = ""
-    _words: frozenset[str] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        words = frozenset(one.word for one in self.settings)
-        object.__setattr__(self, "_words", words)
         two = any(BEHIND in one.sets for one in self.settings)
         if two and not isinstance(self.zone, ZoneKind):
             raise InputError("a Radius has one distance: zones of two are of a ZoneKind")
@@ -272,7 +269,7 @@ class Settings:
         return iter(self.settings)
 
     def __contains__(self, word: object) -> bool:
-        return word in self._words
+        return any(one.word == word for one in self.settings)
 
     def sets(self, kind: UseKind) -> bool:
         """Whether they set a speed, or a zone."""

@@ -17,7 +17,7 @@ from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.tool import Tool
 from flyby.core.program.zone import FINE, ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import MotionGrammar
+from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar
 from flyby.core.source.lines.expressions import Spelling
 from flyby.core.source.lines.language import LineLanguage, LineWriter
 from flyby.core.source.lines.motions import MotionWords
@@ -48,7 +48,7 @@ class Grammar(MotionGrammar):
     joints = frozenset({"J"})
     inline = re.compile(r"(?P<kind>AT)\s*\((?P<values>[^()]*)\)")
     override = "OVR"
-    tool_word, frame_word = "TOOL", "BASE"
+    frames = FrameRegisters("TOOL", "BASE", numbered=False)
     registers = re.compile(r"V\w*|OVR")
     outputs = frozenset({"OUT"})
     spelling = Spelling(datum=re.compile(r"(?P<word>OUT|IN)#(?P<index>\d+)"), names=True)
