@@ -78,13 +78,12 @@ class MotionWords:
         if unit is None:
             return Speed(acceleration_override=acceleration)
         units = self.joint if kind == "J" else self.line
-        if unit.lower() not in units and unit not in units:
+        amount = next((a for known, a in units.items() if known.upper() == unit.upper()), None)
+        if amount is None:
             raise InputError(f"the speed of such a motion is no number of {unit}")
-        unit = unit if unit in units else unit.lower()
-        longer = units[unit].name == "duration"
-        number = numbers[0] / override if longer else numbers[0] * override
+        number = numbers[0] / override if amount.name == "duration" else numbers[0] * override
         speed = Speed(acceleration_override=acceleration)
-        return with_number(speed, units[unit].name, number * units[unit].one)
+        return with_number(speed, amount.name, number * amount.one)
 
     def zone_of(self, word: str | None, numbers: Sequence[float]) -> Zone:
         """The zone of its word and numbers.
@@ -98,7 +97,8 @@ class MotionWords:
         """
         if not (word or numbers) or (numbers and numbers[0] == 0):
             return FINE
-        kind = self.zones[word.upper() if word else next(iter(self.zones))]
+        words = {known.upper(): kind for known, kind in self.zones.items()}
+        kind = words[(word or next(iter(words))).upper()]
         if not numbers:
             if len(kind.sizes) != 1:
                 raise InputError(f"a number should stand behind {word}")

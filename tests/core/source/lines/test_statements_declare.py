@@ -129,6 +129,8 @@ def test_zones_stand_before_the_point_with_a_number_or_without() -> None:
         VendorZone(NEAR, 0.02),
         FINE,
     ]
+    lower = read(PROGRAM.replace("@P", "@p").replace("S=", "s="))
+    assert [(m.zone, m.speed) for m in lower.moves] == [(m.zone, m.speed) for m in read().moves]
     with pytest.raises(SourceError, match="a number should stand behind @"):
         read(PROGRAM.replace("@20", "@"))
 
