@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ..core.door import given
 from ..core.errors import OptionError
 from .changes import WaypointOptions, delivered, idle_notes, task_of, weight
-from .files.texts import ProgramTexts
+from .files.texts import ProgramTexts, written_anew
 from .options.entries import COUNT, Extent, choice, number, switch, value
 from .options.keywords import by_keywords
 from .results.cell_course import CellCourse
@@ -93,9 +93,9 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
 
     program, setup = with_setup(program, options)
     cell = setup.surroundings(program, no_floor=options.no_floor)
-    if options.vias == CHANGE:  # what cannot be written anew is refused before the search
-        setup.vendor.write(program, setup.robot)
     course = replace(CellCourse.of(program, setup), counted=options.vias == CHANGE)
+    if course.counted:  # what cannot be written anew is refused before the search
+        course.loaded(written_anew(setup, program)[0])
     task = task_of(
         program,
         setup,

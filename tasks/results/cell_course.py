@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
+from ...core.errors import InputError
 from ..setup import Setup, start_of
 
 if TYPE_CHECKING:
@@ -62,11 +63,18 @@ class CellCourse:
         return () if self.handling is None else self.handling.targets
 
     def loaded(self, program: Program) -> Program:
-        """The program, changed, with the parts that it carries."""
+        """The program, changed, with the parts that it carries.
+
+        Raises:
+            InputError: its moves may be others, and its text does not say any more what takes a
+                part.
+        """
         if self.handling is None:
             return program
         if self.counted:
-            return CellCourse.of(program, self.setup).program
+            made = CellCourse.of(program, self.setup)
+            _check_taken(self.handling, made.handling)
+            return made.program
         return _with_loads(program, [move.load for move in self.program.moves])
 
     def unloaded(self, program: Program) -> Program:
@@ -103,6 +111,19 @@ class CellCourse:
         meter = ClearanceMeter(setup.cell, self.program, self.handling)
         found = [move for part in parts for move in meter.over(part.run.path, part.first)]
         return tuple(found), tuple(meter.notes)
+
+
+def _check_taken(given: Handling, made: Handling | None) -> None:
+    """Both take the same parts, and let go of them, in the same order."""
+    turns = [(change.name, change.taken) for change in given.changes]
+    now = [] if made is None else [(change.name, change.taken) for change in made.changes]
+    if turns != now:
+        names = ", ".join(dict.fromkeys(name for name, taken in turns if (name, taken) not in now))
+        raise InputError(
+            f"written anew, the program does not say any more where {names or 'parts'} are taken "
+            "or released: name a signal or a statement that it carries out as attach and release "
+            "in the cell file, and no line"
+        )
 
 
 def _with_loads(program: Program, loads: Sequence[Load | None]) -> Program:

@@ -253,6 +253,15 @@ def test_as_many_moves_are_not_the_same_moves(cell) -> None:
     assert counted.unloaded(wanted) == other
 
 
+def test_what_takes_parts_must_be_said_in_what_is_written_anew(cell) -> None:
+    """Its lines are others: before anything is searched that is refused, with what helps."""
+    by_line = cell(
+        ('attach = "set_standard_digital_out(0, True)"', 'attach = "pick.script:16"'),
+    )
+    with pytest.raises(InputError, match=r"does not say any more where bottle 1.*and no line"):
+        flyby.optimize(flyby.read(PICK, cell=by_line), vias="change")
+
+
 def test_what_holds_a_part_is_no_process(cell, tmp_path: Path) -> None:
     """The bottle is carried along lines at one speed, as a bead would be laid."""
     program = tmp_path / "pick.script"
