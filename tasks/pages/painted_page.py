@@ -80,7 +80,7 @@ def painted_page(found: PaintedPart) -> Page:
         draft.tracks,
         files,
         tables,
-        CHARTS,
+        CHARTS if made is not None else [chart for chart in CHARTS if chart.key == SPEED],
         page_coat(found, place),
         made_by=made_by(),
     )

@@ -36,7 +36,7 @@ function layout(session) {
   const main = h("div", { class: "main" }, areas.scene, areas.transport, splitter("--plots", "horizontal", (e) => window.innerHeight - e.clientY), areas.plots);
   const root = h("div", { class: "page" }, areas.top, main, splitter("--side", "vertical", (e) => window.innerWidth - e.clientX), side);
   if (session.page.gantt?.length) root.classList.add("several");
-  if (!(session.page.sources ?? []).length && !session.tracks.length) root.classList.add("plain");
+  if (!(session.page.sources ?? []).length) root.classList.add(session.tracks.length ? "textless" : "plain");
   return { root, ...areas };
 }
 
