@@ -12,15 +12,18 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import product
 
 import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.cell.cell import Cell
-from ...core.collision.proof.certificate import certify, scenes_of
+from ...core.collision.handled_scenes import scenes_along
+from ...core.collision.proof.certificate import SceneOf, certify, scenes_of
 from ...core.collision.proof.verdict import Certificate
 from ...core.errors import InputError, MotionError
+from ...core.handling.handling import ChangeOfHands, handling_of
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.program.program import Program
@@ -134,7 +137,7 @@ def place(
 
     Args:
         controller_at: drives a robot that stands somewhere.
-        program: its targets are in the world.
+        program: its targets are in the world; its moves carry the parts that are held.
         cell: what stands around; its robot stands where the base is now.
         task: where the base may be.
         tell: called with what is being done.
@@ -191,7 +194,8 @@ class _Search:
 
     def _clear(self, shift: Shift, tools: Sequence[Tool], q: FloatArray) -> bool:
         """Whether nothing collides at the targets (M, N)."""
-        scenes = scenes_of(replace(self.cell, robot=self._robot(shift)))
+        # Where parts are handled they touch: that is looked at when a base is proven.
+        scenes = scenes_of(replace(self.cell, robot=self._robot(shift), parts=()))
         return not any(
             scenes(tool).collides(q[[k for k, other in enumerate(tools) if other == tool]]).any()
             for tool in dict.fromkeys(tools)
@@ -239,8 +243,30 @@ class _Search:
             except MotionError:
                 self.known[shift] = None
             else:
-                self.known[shift] = PlacedBase(shift, robot.base, run)
+                placed = PlacedBase(shift, robot.base, run)
+                self.known[shift] = placed if self._alike(robot) else None
         return self.known[shift]
+
+    def _alike(self, robot: Robot) -> bool:
+        """Whether the same parts are taken and released on the same moves from where a robot
+        stands: joint targets move with the base, and parts do not."""
+        if not self.cell.parts:
+            return True
+        made = handling_of(self.program, replace(self.cell, robot=robot), self.task.start)
+        return made.changes == self._given_changes
+
+    @cached_property
+    def _given_changes(self) -> tuple[ChangeOfHands, ...]:
+        return handling_of(self.program, self.cell, self.task.start).changes
+
+    def _scenes(self, placed: PlacedBase) -> SceneOf:
+        """The cell along each move, with the robot where it stands."""
+        cell = replace(self.cell, robot=self._robot(placed.shift))
+        handling = None
+        if cell.parts:
+            handling = handling_of(self.program, cell, self.task.start)
+        wanted = self.task.clearance
+        return scenes_along(cell, handling, self.program, lambda: placed.run.path, wanted)
 
     def _fastest(self) -> list[PlacedBase]:
         found = [placed for placed in self.known.values() if placed is not None]
@@ -292,7 +318,7 @@ class _Search:
         """With its certificate."""
         self.tell(f"proving a base, {placed.run.duration:.3f} s")
         robot = self._robot(placed.shift)
-        scenes = scenes_of(replace(self.cell, robot=robot))
+        scenes = self._scenes(placed)
         controller = self.controller_at(robot)
         certificate = certify(
             controller,

@@ -14,6 +14,7 @@ from ...core.errors import InputError, MotionError, Note, OptionError, UnknownNa
 from ..options import texts
 from ..options.entries import DISTANCE, NOT_NEGATIVE, number, value
 from ..options.keywords import by_keywords
+from ..results.cell_course import CellCourse
 from ..setup import CellOptions, start_of, with_setup
 from .changing import feasibility_of
 from .opening import is_station_file, open_station
@@ -122,17 +123,20 @@ def _placed(program: Program, options: PlaceOptions, beside: BesideOthers | None
         clearance=cell.clearance if options.clearance is None else options.clearance,
         start=start_of(program),
     )
-    found = place(lambda robot: Controller(vendor, robot), program, cell, task, options.say, beside)
+    course = CellCourse.of(program, setup)
+    found = place(
+        lambda robot: Controller(vendor, robot), course.program, cell, task, options.say, beside
+    )
 
     def refused_from(base: Pose) -> MotionError | None:
         """Why the program cannot be driven from a base as its configurations say."""
         try:
-            Controller(setup.vendor, cell.robot.with_base(base)).run(program, task.start)
+            Controller(setup.vendor, cell.robot.with_base(base)).run(course.program, task.start)
         except MotionError as error:
             return error
         return None
 
-    notes = []
+    notes = list(course.notes)
     if setup.vendor.speaks is not None and not setup.vendor.speaks.work_objects:
         notes.append(
             Note(

@@ -114,9 +114,26 @@ def test_a_program_without_a_cell_has_no_clearance() -> None:
     assert run.clearances == ()
 
 
-def test_where_bases_are_looked_for_parts_are_refused(cell) -> None:
-    with pytest.raises(InputError, match=r"parts that are picked and placed.*pareto"):
-        flyby.place(flyby.read(PICK, cell=cell()), room="0,0")
+def test_the_base_of_a_robot_that_carries_parts(cell, tmp_path: Path) -> None:
+    """A joint target at which the bottle is taken moves with the base, and the bottle, of 30 mm
+    radius, does not."""
+    short = tmp_path / "pick.script"
+    short.write_text(_SHORT, "utf-8")
+    made = flyby.place(flyby.read(short, cell=cell()), room="40,0")
+    found = made.found
+    assert found.before is not None and found.best is not None
+    assert found.best.run.duration < found.before.run.duration and found.best.certificate.proven
+    assert "what takes it" in found.best.certificate.message
+    assert any(move.load is not None for move in found.best.run.program.moves)
+    joints = flyby.emulate(flyby.read(short, cell=cell())).parts[0].run.path.route.ends.q
+    by_joints = ", ".join(f"{q:.6f}" for q in joints[1, 1])
+    short.write_text(
+        _SHORT.replace("movel(p[-0.45, -0.25, 0.12, 0, 3.1416, 0]", f"movej([{by_joints}]"), "utf-8"
+    )
+    program = flyby.read(short, cell=cell(("leaves = true", "leaves = true\nnear_mm = 5")))
+    found = flyby.place(program, room="40,0").found
+    assert found.before is not None
+    assert found.best is not None and abs(found.best.shift[0]) <= 0.035 + 1e-9
 
 
 def test_the_front_of_a_program_that_carries_parts(

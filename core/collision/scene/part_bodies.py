@@ -32,8 +32,9 @@ def refuse_parts(cell: Cell) -> None:
         raise InputError(
             f"{where} has parts that are picked and placed ({names}): they are followed by "
             f"{called('emulate')}, {called('check')}, {called('zones')}, {called('optimize')} and "
-            f"{called('pareto')}, not here: take a cell file without [[part]], with what is "
-            "carried in the shape and mass of the tool, and what lies around as [[obstacle]]"
+            f"{called('pareto')}, as programs take them; here nobody says where they are: take a "
+            "cell file without [[part]], with what is carried in the shape and mass of the tool, "
+            "and what lies around as [[obstacle]]"
         )
 
 

@@ -40,6 +40,9 @@ def changed(folder: Path) -> bytes:
 def test_before_and_after(opened: Opened, changed: bytes) -> None:
     view = opened(changed)
     assert view.evaluate("flyby.view.arms.map((arm) => arm.ghost)") == [False, True]
+    # Ghosts come before all that is solid, so that these hide them.
+    orders = view.evaluate(_ORDERS)
+    assert max(orders["true"]) < min(orders["false"])
     assert view.evaluate("flyby.session.track.name") == "after"
     assert view.locator(".proof").inner_text().startswith("✓ proven")
     view.locator(".proof").click()
@@ -82,6 +85,19 @@ def test_waypoint_by_waypoint(opened: Opened, changed: bytes) -> None:
         assert times[0] == pytest.approx(times[1], abs=2e-3)
 
 
+_ORDERS = """() => {
+  const found = { true: [], false: [] };
+  for (const arm of flyby.view.arms) {
+    arm.group.traverse((object) => {
+      if (object.userData.solid && object.userData.body.role === "link") {
+        found[arm.ghost].push(object.renderOrder);
+      }
+    });
+  }
+  return found;
+}"""
+
+
 def test_paint(opened: Opened, folder: Path) -> None:
     x, y = np.meshgrid(np.linspace(-150, 150, 6), np.linspace(-100, 100, 4))
     vertices = np.stack([x.ravel(), y.ravel(), 0.0 * x.ravel()], axis=1)
@@ -102,7 +118,10 @@ def test_paint(opened: Opened, folder: Path) -> None:
     assert page.coat is not None
     known = page.coat.thickness.values[np.isfinite(page.coat.thickness.values)]
     assert known.mean() == pytest.approx(list(painted.coats.values())[-1].thickness.mean())
+    # There is no robot, and no text of a program.
+    assert [chart.title for chart in page.charts] == ["TCP speed"]
     view = opened(page_bytes(painted))
+    assert not view.locator(".source").is_visible() and view.locator(".tables").is_visible()
     assert view.evaluate("flyby.view.coat.mesh.geometry.attributes.color.count") > 100
     assert "of them within ±10 %" in view.locator(".drawing").inner_text()
     # The coat builds up: at each time kept it is what the gun has laid until then.
