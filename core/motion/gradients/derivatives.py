@@ -211,7 +211,8 @@ class Derivatives:
         route = self._path.route
         twist = np.concatenate([bar.ends.position, bar.ends.turn], axis=-1)
         J = end_jacobians(route.ends.q, route.chains)
-        back = _inverses(J[:, 1][..., route.solved])
+        posed = any(isinstance(self._program.moves[i].target, PoseTarget) for i in route.moves)
+        back = _inverses(J[:, 1][..., route.solved]) if posed else None
         inherited = np.zeros(joints.shape[1])
         for k in range(len(route.moves) - 1, -1, -1):
             q_bar = bar.ends.q[k, 1] + inherited

@@ -24,7 +24,7 @@ from ....core.motion.gradients.sensitivity import (
 from ....core.motion.path.path import Path
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
-from ....core.program.target import JointTarget
+from ....core.program.target import JointTarget, PoseTarget
 from .blocks import MoveBlock
 from .parts import JointPoint, PosePoint, ZonePart
 from .variables import ProgramVariables
@@ -273,7 +273,8 @@ def _at_waypoints(drive: DrivenBlock, joints: FloatArray, twists: FloatArray) ->
     waypoints = np.zeros((len(route.moves) + 1, *joints.shape[1:]))
     squares = J[:, :, route.solved]
     regular = np.zeros(len(squares), dtype=bool)
-    if len(route.solved) == 6:
+    posed = any(isinstance(drive.program.moves[i].target, PoseTarget) for i in route.moves)
+    if posed and len(route.solved) == 6:
         regular = np.linalg.cond(squares) < SINGULAR_TARGET
     for k, move in enumerate(route.moves):
         target, found = drive.program.moves[move].target, waypoints[k + 1]
