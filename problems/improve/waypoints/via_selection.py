@@ -29,14 +29,14 @@ _SERVES_NOTHING = 1e-4
 """Share of the stretch's cost that a via point must save to stay."""
 _PAYS = 2e-3
 """Share of the stretch's cost that one more must save."""
-_LONGER = 2
-"""Via points to cut in two that are searched longer, one after the other until one saves enough."""
 _MOST = 4
 """Via points more in a stretch."""
 _BRIEF = 30
 """Iterations of a search that only compares."""
 _ROUGH = 0.02
 """Share of the stretch's cost by which more searching may better what a short search comes to."""
+_SECOND = 0.005
+"""The same of the second best of several, which is searched longer where the best is given up."""
 
 
 @dataclass(frozen=True)
@@ -166,16 +166,17 @@ class _Turn:
         most = best.cost * (1.0 - _PAYS * self._share(best))
         tried = [(rough, i) for i in self._divisible(best) if (rough := self._divided(best, i))]
         longer = replace(self.effort, starts=1, generations=min(1, self.effort.generations))
-        for rough, i in sorted(tried, key=lambda pair: pair[0].cost)[:_LONGER]:
-            if self._may_come_to(best, rough, most):
+        best_first = sorted(tried, key=lambda pair: pair[0].cost)
+        for (rough, i), share in zip(best_first, (_ROUGH, _SECOND), strict=False):
+            if self._may_come_to(best, rough, most, share):
                 found = self._search(best, rough.program, _later(i), longer)
                 if found is not None and found.cost < most:
                     return found
         return None
 
-    def _may_come_to(self, best: Counted, rough: Rough, cost: float) -> bool:
+    def _may_come_to(self, best: Counted, rough: Rough, cost: float, share: float = _ROUGH) -> bool:
         """Whether what a short search comes to may cost no more than that, once it is refined."""
-        return rough.cost - _ROUGH * self._share(best) * best.cost <= cost
+        return rough.cost - share * self._share(best) * best.cost <= cost
 
     def _divisible(self, best: Counted) -> list[int]:
         """Via points that go where they like; what limits one says nothing of two."""
