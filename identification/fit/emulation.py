@@ -26,8 +26,7 @@ from ...core.motion.model.motion_model import MotionModel, first_change
 from ...core.motion.path.path import Path
 from ..matching import Match, match
 from ..prediction import PERIOD, start_of
-from .keys import with_value
-from .parameters import ParameterSet
+from .parameters import SteppedModels
 from .runs import PreparedRun
 
 STEP = 1e-3
@@ -130,22 +129,21 @@ class RunEmulator:
         """
         return self._weighted(self._off(self._emulated(model, nuisance), model, nuisance))
 
-    def rows(self, parameters: ParameterSet, values: FloatArray, nuisance: Nuisance) -> Rows:
+    def rows(self, models: SteppedModels, nuisance: Nuisance) -> Rows:
         """Residuals and derivatives.
 
         Args:
-            parameters: whose derivatives are wanted.
-            values: (P,) of them.
+            models: of the parameters whose derivatives are wanted, by steps of `STEP`.
             nuisance: of the run.
 
         Raises:
             FlybyError: the program cannot be driven so.
         """
-        model = parameters.model(values)
+        model = models.model
         stages = self._emulated(model, nuisance)
         off = self._off(stages, model, nuisance)
         base = _Base(model, stages, nuisance, off, self._moments(stages, nuisance))
-        columns = [self._by_parameter(parameters, values, k, base) for k in range(parameters.size)]
+        columns = [self._by_parameter(moved, step, base) for moved, step in models.moved]
         shape = (*off.shape, 0)
         by_parameter = np.stack(columns, -1) if columns else np.zeros(shape)
         by_time = self._by_time(stages, model, nuisance)
@@ -162,17 +160,8 @@ class RunEmulator:
     def _weighted(self, off: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("kmn,kn->km", self.prepared.weight, off))
 
-    def _by_parameter(
-        self, parameters: ParameterSet, values: FloatArray, k: int, base: _Base
-    ) -> FloatArray:
-        """(K, N), by a step to the side where the bounds leave room."""
-        one = parameters.parameters[k]
-        step = STEP * one.scale
-        if one.upper - values[k] < step < values[k] - one.lower:
-            step = -step
-        model = base.model
-        for key in one.keys:
-            model = with_value(model, key, float(values[k] + step))
+    def _by_parameter(self, model: MotionModel, step: float, base: _Base) -> FloatArray:
+        """(K, N), by a step to another model."""
         made = self._stages(model, base.nuisance, base.stages)
         if made is base.stages and base.moments is not None:
             off = self.prepared.q - self._led(model, base, base.moments)

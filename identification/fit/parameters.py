@@ -166,6 +166,19 @@ def usual_parameters(model: MotionModel, robot: Robot) -> list[str]:
     return ["blend.tcp.beta[0] = 0", *averages, *scales]
 
 
+@dataclass(frozen=True, eq=False)
+class SteppedModels:
+    """Motion models that tell how residuals change with parameters.
+
+    Args:
+        model: where derivatives are taken.
+        moved: of each parameter the model with it a step aside, and the step.
+    """
+
+    model: MotionModel
+    moved: tuple[tuple[MotionModel, float], ...]
+
+
 @dataclass(frozen=True)
 class ParameterSet:
     """Several parameters on top of a motion model.
@@ -246,6 +259,28 @@ class ParameterSet:
             for key in one.keys:
                 model = with_value(model, key, float(value))
         return model
+
+    def stepped(self, values: FloatArray, share: float) -> SteppedModels:
+        """The motion model with values (P,), and with each of them a step aside, to the side where
+        the bounds leave room.
+
+        Args:
+            values: (P,).
+            share: of a parameter's scale that is stepped by.
+
+        Raises:
+            InputError: the model refuses them.
+        """
+        model, made = self.model(values), []
+        for one, value in zip(self.parameters, values, strict=True):
+            step = share * one.scale
+            if one.upper - value < step < value - one.lower:
+                step = -step
+            moved = model
+            for key in one.keys:
+                moved = with_value(moved, key, float(value + step))
+            made.append((moved, step))
+        return SteppedModels(model, tuple(made))
 
     def starting_at(self, values: FloatArray) -> ParameterSet:
         """The same with other starts (P,)."""

@@ -12,8 +12,8 @@ from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from ...core.motion.model.motion_model import MotionModel
 from ...core.worker_pool import WorkerPool, worker_pool
-from .emulation import Nuisance, Rows, RunEmulator
-from .parameters import ParameterSet
+from .emulation import STEP, Nuisance, Rows, RunEmulator
+from .parameters import ParameterSet, SteppedModels
 from .runs import PreparedRun
 
 Answer = TypeVar("Answer")
@@ -62,7 +62,11 @@ class RunPool:
     ) -> list[Rows | FlybyError]:
         """Residuals and derivatives of each run; the error of one that cannot be driven so."""
         bare = ParameterSet(replace(parameters.base, provenance={}), parameters.parameters)
-        return self._each(_rows, [(bare, values, one) for one in nuisances])
+        try:
+            models = bare.stepped(values, STEP)
+        except FlybyError as error:
+            return [error for _ in nuisances]
+        return self._each(_rows, [(models, one) for one in nuisances])
 
     def _each(
         self, work: Callable[..., Answer], arguments: Sequence[tuple[Any, ...]]
@@ -85,7 +89,5 @@ def _residuals(emulator: RunEmulator, model: MotionModel, nuisance: Nuisance) ->
     return emulator.residuals(model, nuisance)
 
 
-def _rows(
-    emulator: RunEmulator, parameters: ParameterSet, values: FloatArray, nuisance: Nuisance
-) -> Rows:
-    return emulator.rows(parameters, values, nuisance)
+def _rows(emulator: RunEmulator, models: SteppedModels, nuisance: Nuisance) -> Rows:
+    return emulator.rows(models, nuisance)

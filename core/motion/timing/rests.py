@@ -151,6 +151,8 @@ def _shares(
 ) -> FloatArray:
     """(S, N), z at which axes that are beyond the window at the left end (S, 2) of an interval come
     into it; 0 of others."""
+    if not len(ends):
+        return np.zeros_like(rest)
     states, h = along.states, spacing[:, None, None]
     parts = (states.q[ends] - rest[:, None], h * states.dq[ends], h**2 * states.ddq[ends])
     data = np.stack(parts, axis=2).reshape(len(ends), 6, rest.shape[1])

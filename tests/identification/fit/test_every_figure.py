@@ -28,7 +28,7 @@ from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
-from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded
+from flyby.identification.fit.emulation import STEP, Nuisance, RunEmulator, commanded
 from flyby.identification.fit.keys import fit_of, with_value
 from flyby.identification.fit.parameters import ParameterSet, parameter
 from flyby.identification.fit.runs import PreparedRun, prepare
@@ -330,7 +330,7 @@ def test_it_is_fitted_with_what_is_kept_of_other_emulations(number: str) -> None
     usual = fit_of(number)
     assert usual.lower <= one.lower <= one.start <= one.upper <= usual.upper
     middle = Nuisance(run.offset)
-    rows = RunEmulator(run).rows(named, named.start, middle)
+    rows = RunEmulator(run).rows(named.stepped(named.start, STEP), middle)
     step = 1e-3 * one.scale
     if one.upper < one.start + step:
         step = -step

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError
 from flyby.core.motion.command.commanded_motion import stamped_motion
 from flyby.core.motion.emulator.controller import Controller
-from flyby.identification.fit.emulation import Nuisance, RunEmulator, commanded
+from flyby.identification.fit.emulation import STEP, Nuisance, RunEmulator, commanded
 from flyby.identification.fit.loss import curvature, influence, loss, square_root
 from flyby.identification.fit.parameters import ParameterSet
 from flyby.identification.fit.problem import Problem, Variables, first_nuisances
@@ -91,7 +91,7 @@ def test_what_a_parameter_does_not_touch_is_the_same_afresh(run) -> None:
     """Stages that are kept give what all stages made anew give."""
     emulator = RunEmulator(run)
     parameters = ParameterSet.named(START, list(TRUE_VALUES))
-    rows = emulator.rows(parameters, parameters.start, Nuisance(0.03))
+    rows = emulator.rows(parameters.stepped(parameters.start, STEP), Nuisance(0.03))
     for k, one in enumerate(parameters.parameters):
         step = 1e-3 * one.scale
         point = parameters.start.copy()
@@ -103,9 +103,8 @@ def test_what_a_parameter_does_not_touch_is_the_same_afresh(run) -> None:
 def test_a_smoother_command_is_no_later(run) -> None:
     """Offsets are counted from the middle of the window: smoothing moves no run in time."""
     emulator = RunEmulator(run)
-    rows = emulator.rows(
-        ParameterSet.named(START, ["time.smoothing_s[*]"]), np.array([0.03]), Nuisance(0.03)
-    )
+    named = ParameterSet.named(START, ["time.smoothing_s[*]"])
+    rows = emulator.rows(named.stepped(np.array([0.03]), STEP), Nuisance(0.03))
     by_width, by_offset = rows.by_parameter[..., 0].ravel(), rows.by_offset.ravel()
     both = by_width @ by_offset / np.linalg.norm(by_width) / np.linalg.norm(by_offset)
     assert abs(both) < 0.3
