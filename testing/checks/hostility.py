@@ -59,10 +59,10 @@ class HostilityChecks(Subject):
     def test_files_keep_their_bytes(self) -> None:
         """Ends of line, byte-order marks and code pages are read, and nothing of them is lost."""
         self.need("reader", "writer")
-        _, sources = self.sample()
-        plain = self.read_back(sources)
+        robot, sources = self.sample()
+        plain = self.read_back(sources, robot)
         for name, encoded in self._encodings(dict(sources)).items():
-            program = self.read_bytes(encoded)
+            program = self.read_bytes(encoded, robot)
             assert difference(program, plain) is None, name
             if isinstance(program.reading, Reading):
                 kept = [file.data for file in program.reading.files.values()]

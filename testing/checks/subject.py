@@ -331,12 +331,13 @@ class Subject:
     ) -> Program:
         """The program in ``sources``, read from files as a user would.
 
-        Of an arm with an axis that slides no text says whether its values are mm or degrees, and of
-        one with an arm angle none which axis is the seventh: the reader gets the robot then, and
-        none otherwise.
+        Of an arm with an axis that slides no text says whether its values are mm or degrees, of one
+        with an arm angle none which axis is the seventh, and where numbers are shares of what an
+        arm can do, none says how much: the reader gets the robot then, and none otherwise.
         """
         asked = robot is not None and (
             robot.arm_angle_reference is not None
+            or getattr(self.vendor.reader, "depends", False)
             or any(j.kind is JointKind.PRISMATIC for j in robot.joints)
         )
         texts = {file: text.encode() for file, text in sources.items()}

@@ -37,6 +37,11 @@ class FaultyReader:
     sound: Reader
     fault: Fault
 
+    @property
+    def depends(self) -> bool:
+        """Whether it reads for an arm (`core.source.lines.language.LineLanguage.depends`)."""
+        return bool(getattr(self.sound, "depends", False))
+
     def read(self, text: str, file: str, options: ReadOptions) -> Program:
         """See `flyby.core.language.Reader`."""
         return self._faulty(self.sound.read(text, file, options))

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.lines.amounts import Amount
 from flyby.core.translation.hand_out import check_driven
 from flyby.core.translation.translate import translate
 from flyby.tasks.files.new_vendor import new_vendor
@@ -88,6 +91,24 @@ def test_a_program_for_small_arms_is_translated_both_ways(
     written = other.write(back.program, other.robot(robot), {"opaque": "comment"})
     check_driven(back, written, other, other.robot(robot))
     assert len(back.program.moves) == len(program.moves) == 14
+
+
+def test_speeds_may_be_shares_of_what_an_arm_can_do(made: Any) -> None:
+    """The suite reads for the arm then, as writers do."""
+    language = copy(made[0].reader)
+    words = replace(language.grammar.words, line={"": Amount("tcp", lambda robot: 2.0 / 100)})
+    language.grammar = type("Grammar", (language.grammar,), {"words": words})
+    parts = dict.fromkeys(("reader", "writer", "patcher"), language)
+
+    class Suite(VendorConformance):
+        name = "omega"
+        vendor = replace(made[0], **parts)
+        golden = made[1]
+
+    Suite().test_what_is_written_is_read_again()
+    Suite().test_files_keep_their_bytes()
+    with pytest.raises(AssertionError, match=r"speed\.tcp: 0\.25 stated, 5 read"):
+        Suite().test_golden_texts_mean_what_their_author_says()
 
 
 def test_a_recorder_without_a_golden_recording_is_named(tmp_path: Path) -> None:

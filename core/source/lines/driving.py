@@ -235,7 +235,7 @@ class MotionGrammar(FormGrammar):
             return AssignAll(line.span, target, (), "where the running robot is")
         if found.groupdict().get("values"):
             return AssignAll(line.span, target, ((1.0, self._at(line, found)),))
-        if self.inline.fullmatch(value.strip()):
+        if self._inline(line, found, "value") is not None:
             return AssignAll(line.span, target, ((1.0, self.place(line, found, "value")),))
         return AssignAll(line.span, target, tuple(_terms(self.parse(line, found, "value"))))
 
@@ -307,8 +307,14 @@ class MotionGrammar(FormGrammar):
 
     def place(self, line: Line, found: Found, group: str) -> Operand:
         """The position in a group, by name or by its numbers."""
-        own = self.inline.fullmatch(line.source.text, *found.span(group))
+        own = self._inline(line, found, group)
         return self.point_at(line, found, group) if own is None else self._at(line, own)
+
+    def _inline(self, line: Line, found: Found, group: str) -> Found | None:
+        """The position that stands in a group by its numbers, if one does."""
+        text, (start, end) = found[group], found.span(group)
+        start += len(text) - len(text.lstrip())
+        return self.inline.fullmatch(line.source.text, start, end - len(text) + len(text.rstrip()))
 
     def _at(self, line: Line, found: Found) -> Operand:
         """The position of the numbers in ``values``."""

@@ -68,7 +68,7 @@ class Grammar(MotionGrammar):
         "wait": r"DELAY\s+(?P<time>.*)",
         "assigned.frame": r"(?P<target>(?:TOOL|FIELD)\s+\d+),\s*P\((?P<values>.*)\)",
         "assigned.held": r"(?P<target>CHANGETOOL|CHANGEFIELD)\s+(?P<value>.*)",
-        "assigned": r"(?P<target>\w+)\s*=\s*(?P<value>.*)",
+        "assigned": r"(?P<target>\w+)\s*=(?P<value>.*)",
     }
 
 
