@@ -8,6 +8,7 @@ from typing import Any
 
 from ...errors import InputError
 from ...program.speed import Speed
+from ...program.zone import Fine, Radius, VendorZone
 from ...robot.model import Robot
 
 ZONE = "zone"
@@ -74,3 +75,14 @@ def with_number(speed: Speed, name: str, value: float) -> Speed:
     """A speed with another number."""
     numbers: dict[str, Any] = {name: value}
     return replace(speed, **numbers)
+
+
+def zone_number(zone: object, amount: Amount) -> float:
+    """A number of a zone, in the text's own unit: of a stop all are 0."""
+    if amount.name == PASSING:
+        return float(not isinstance(zone, Fine))
+    if isinstance(zone, Radius):
+        return zone.tcp / amount.one
+    if not isinstance(zone, VendorZone):
+        return 0.0
+    return zone.size * (zone.ratio if amount.name == BEHIND else 1.0) / amount.one

@@ -1,12 +1,15 @@
-"""Lines as the rules for branches and loops see them."""
+"""Lines as the rules for branches and loops see them, and what lines set without naming it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 
+from ...dialect import Unsaid
 from ..execution.steps import NOTHING, Exit, Step
 from .expressions import Datum, Expression, Number, Operation, data_in
 from .program import Grammar, LineProgram
+from .settings import Settings
 from .statements import (
     Assign,
     AssignAll,
@@ -21,6 +24,9 @@ from .statements import (
     Set,
     Statement,
 )
+
+_LONGEST = 1000
+"""Characters of a line that is looked at."""
 
 
 class Statements:
@@ -119,3 +125,32 @@ def expressions_of(statement: Statement) -> list[Expression]:
 def _terms(statement: AssignAll) -> list[Expression]:
     """The expressions in the terms of a sum."""
     return [e for _, one in statement.terms for e in ((one.point,) if one.point else one.numbers)]
+
+
+def unsaid(
+    settings: Settings, motion: re.Pattern[str], others: Sequence[str] = ()
+) -> Callable[[str], Iterator[Unsaid]]:
+    """Finds where settings are set and used, for `core.dialect.Wording.unsaid`.
+
+    Args:
+        settings: of the language.
+        motion: a line that drives.
+        others: words that set what holds and is no number: tools and frames.
+    """
+    begins = [(re.compile(rf"{re.escape(w)}\b", re.IGNORECASE), w) for w in others]
+
+    def found(text: str) -> Iterator[Unsaid]:
+        for line in re.finditer(r"[^\s;][^\r\n;]*", text):
+            said = line[0].rstrip()
+            if len(said) > _LONGEST:
+                continue
+            words = [one.word for one in settings if one.pattern.fullmatch(said)]
+            words += [word for pattern, word in begins if pattern.match(said)]
+            place = line.start(), line.start() + len(said)
+            if words:
+                yield Unsaid(words[0], *place, given=True)
+            elif motion.match(said):
+                every = (*(one.word for one in settings), *others)
+                yield from (Unsaid(word, *place) for word in every)
+
+    return found

@@ -12,7 +12,6 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-from ...dialect import Unsaid
 from ...display import counted
 from ...errors import InputError, Span
 from ...program.move import Move, MoveJ
@@ -21,14 +20,21 @@ from ...program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind
 from ...robot.model import Robot
 from ..patch.edits import Edit
 from ..patch.uses import MovePart, Use, UseKind
-from ..text.files import SourceText
 from ..text.numerals import nine_decimals, with_decimals_of
-from .amounts import BEHIND, PASSING, ZONE, ZONES, Amount, Units, of_arm, stated, with_number
+from .amounts import (
+    BEHIND,
+    PASSING,
+    ZONE,
+    ZONES,
+    Amount,
+    Units,
+    of_arm,
+    stated,
+    with_number,
+    zone_number,
+)
 from .expressions import USUAL, Datum, Expression, Number, Spelling, parse, parse_all
 from .statements import Line, Numbers, Operand, Set
-
-_LONGEST = 1000
-"""Characters of a line that is looked at."""
 
 
 @dataclass(frozen=True)
@@ -146,9 +152,9 @@ class Setting:
         if found["number"] is None:
             given, unit = self._meant(span, found["word"] or ""), self.unit
         else:
+            place = line.source, *found.span("number"), spelling
             several = self.more and "," in found["number"]
-            each = parse_all if several else _only
-            given = each(line.source, *found.span("number"), spelling)
+            given = parse_all(*place) if several else (parse(*place),)
             known = {unit.upper(): unit for unit in (*self.joint, *self.line)}
             unit = known[(found["unit"] or "").upper()]
         if len(given) > self.count:
@@ -157,8 +163,7 @@ class Setting:
         rest = (Number(span, self.omitted[k]) if self.omitted else given[-1] for k in left_out)
         once = self.always is not None and not found["always"]
         alone = self.whole and all(isinstance(one, Number) for one in given)
-        place = span if alone else None
-        return Set(line.span, self.names, (*given, *rest), unit, once, place)
+        return Set(line.span, self.names, (*given, *rest), unit, once, span if alone else None)
 
     def _meant(self, span: Span, word: str) -> tuple[Expression, ...]:
         """The numbers that a word stands for."""
@@ -172,8 +177,8 @@ class Setting:
         units = self.joint if isinstance(move, MoveJ) else self.line
         if not isinstance(part, Speed):
             unit = next(iter(units), None)
-            found = None if unit is None else (unit, _of_zone(part, units[unit]))
-            further = [_of_zone(part, one) for one in self.more]
+            found = None if unit is None else (unit, zone_number(part, units[unit]))
+            further = [zone_number(part, one) for one in self.more]
         else:
             found = stated(part, units)
             values = [(getattr(part, one.name), one.one) for one in self.more]
@@ -221,21 +226,6 @@ class Setting:
                 given += [f" {nine_decimals(value)}" for value in new[len(given) : k + 1]]
         start, end = found.span("number")
         return f"{text[:start]}{','.join(given)}{text[end:]}"
-
-
-def _only(source: SourceText, start: int, end: int, spelling: Spelling) -> tuple[Expression, ...]:
-    return (parse(source, start, end, spelling),)
-
-
-def _of_zone(part: MovePart, amount: Amount) -> float:
-    """A number of a zone: of a stop all are 0."""
-    if amount.name == PASSING:
-        return float(not isinstance(part, Fine))
-    if isinstance(part, Radius):
-        return part.tcp / amount.one
-    if not isinstance(part, VendorZone):
-        return 0.0
-    return part.size * (part.ratio if amount.name == BEHIND else 1.0) / amount.one
 
 
 @dataclass(frozen=True)
@@ -433,33 +423,6 @@ class Settings:
             yield Edit(before, put_in, use.index)
         if put_back:
             yield Edit(behind, put_back, use.index)
-
-    def unsaid(
-        self, motion: re.Pattern[str], others: Sequence[str] = ()
-    ) -> Callable[[str], Iterator[Unsaid]]:
-        """Finds where settings are set and used, for `core.dialect.Wording.unsaid`.
-
-        Args:
-            motion: a line that drives.
-            others: words that set what holds and is no number: tools and frames.
-        """
-        begins = [(re.compile(rf"{re.escape(w)}\b", re.IGNORECASE), w) for w in others]
-
-        def found(text: str) -> Iterator[Unsaid]:
-            for line in re.finditer(r"[^\s;][^\r\n;]*", text):
-                said = line[0].rstrip()
-                if len(said) > _LONGEST:
-                    continue
-                words = [one.word for one in self.settings if one.pattern.fullmatch(said)]
-                words += [word for pattern, word in begins if pattern.match(said)]
-                place = line.start(), line.start() + len(said)
-                if words:
-                    yield Unsaid(words[0], *place, given=True)
-                elif motion.match(said):
-                    every = (*(one.word for one in self.settings), *others)
-                    yield from (Unsaid(word, *place) for word in every)
-
-        return found
 
     def _of(self, kind: UseKind) -> list[Setting]:
         return [one for one in self.settings if one.is_zone == (kind is UseKind.ZONE)]

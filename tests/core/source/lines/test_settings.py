@@ -18,6 +18,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.lines.amounts import Amount
+from flyby.core.source.lines.analysis import unsaid
 from flyby.core.source.lines.driving import MotionGrammar
 from flyby.core.source.lines.expressions import Operation, Spelling, Truth, parse, parse_all
 from flyby.core.source.lines.forms import Found
@@ -219,7 +220,7 @@ def test_a_language_knows_its_own_texts() -> None:
 
 def test_settings_that_code_depends_on_are_found_in_the_text() -> None:
     text = "SPEED 30 ALWAYS\n  LMOVE a\nx = 1\naccel := 5\n"
-    found = list(HELD.unsaid(re.compile("[JL]MOVE"))(text))
+    found = list(unsaid(HELD, re.compile("[JL]MOVE"))(text))
     assert [(one.datum, one.given) for one in found] == [
         ("SPEED", True),
         ("SPEED", False),
