@@ -233,8 +233,10 @@ def _resized(zone: Sized, size: float) -> Sized:
 def _better(zone: Zone, wanted: EmulatedCorner, found: EmulatedCorner) -> Zone:
     """The zone scaled so that the cut becomes what is wanted."""
     size = _size(zone)
-    if not (wanted.passed and found.passed) or size == 0.0 or wanted.cut < _STRAIGHT:
+    if not (wanted.passed and found.passed) or size == 0.0:
         return zone
+    if wanted.cut < _STRAIGHT:
+        return _as_far(zone, wanted, found)
     if found.cut < _STRAIGHT:
         return zone
     ratio = wanted.cut / found.cut
@@ -244,6 +246,16 @@ def _better(zone: Zone, wanted: EmulatedCorner, found: EmulatedCorner) -> Zone:
         # Larger has no effect: begin again from what is in effect.
         return zone if ratio > 1.0 else _resized(zone, found.reach * ratio)
     return _resized(zone, size * ratio)
+
+
+def _as_far(zone: Zone, wanted: EmulatedCorner, found: EmulatedCorner) -> Zone:
+    """The zone of a straight corner: it keeps its reach, which of kinds by speed is not their size,
+    but grows about as its square."""
+    by_speed = isinstance(zone, VendorZone) and zone.kind.reach is not None
+    if not by_speed or min(wanted.reach, found.reach) < _STILL:
+        return zone
+    ratio = math.sqrt(wanted.reach / found.reach)
+    return zone if abs(ratio - 1.0) < _MET else _resized(zone, _size(zone) * ratio)
 
 
 def _within(zone: Zone, found: EmulatedCorner) -> Zone:

@@ -11,8 +11,10 @@ from typing import Any
 
 import pytest
 
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.lines.amounts import Amount
+from flyby.core.translation.corners import corners_of
 from flyby.core.translation.hand_out import check_driven
 from flyby.core.translation.translate import translate
 from flyby.tasks.files.new_vendor import new_vendor
@@ -91,6 +93,22 @@ def test_a_program_for_small_arms_is_translated_both_ways(
     written = other.write(back.program, other.robot(robot), {"opaque": "comment"})
     check_driven(back, written, other, other.robot(robot))
     assert len(back.program.moves) == len(program.moves) == 14
+
+
+@pytest.mark.parametrize("radius", [2.0, 6.0])
+def test_a_straight_corner_keeps_the_reach_of_its_zone(made: Any, radius: float) -> None:
+    """Of a kind by speed nobody knows it before it is driven."""
+    abb, small, own = find_vendor("abb"), find_robot("abb/irb120-3-058"), made[0]
+    arm = own.robot("arm-1")
+    rest = "[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]"
+    points = "".join(f"CONST robtarget p{k} := [[320,{60 * k},300],{rest}];\n" for k in range(3))
+    zone = f"[FALSE,{radius},{radius},{radius},1,{radius},1]"
+    lines = f"MoveJ p0,v200,fine,tool0;\nMoveL p1,v400,{zone},tool0;\nMoveL p2,v400,fine,tool0;\n"
+    program = abb.read(f"MODULE M\n{points}PROC main()\n{lines}ENDPROC\nENDMODULE\n", "m.mod")
+    there = translate(program, (abb, small), (own, arm)).program
+    path = Controller(own, arm).plan(there)
+    (reach,) = [one.reach for one in corners_of(path) if one.passed]
+    assert reach == pytest.approx(radius / 1000, rel=0.15)
 
 
 def test_speeds_may_be_shares_of_what_an_arm_can_do(made: Any) -> None:
