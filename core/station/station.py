@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from ..handling.handling import Handling
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.program import Program
+from ..program.tool import Load
 from ..program.world_zone import WorldZone
 from .actions import Action
 from .gates import Gate
@@ -66,11 +67,15 @@ class StationRobot:
 
     def carrying(self, program: Program) -> Program:
         """A program of the same moves with the parts that the robot carries along them."""
-        return _with_loads_of(program, self.run.program)
+        return _with_loads(program, [move.load for move in self.run.program.moves])
 
     def bare(self, program: Program) -> Program:
-        """What `carrying` makes, without the parts."""
-        return _with_loads_of(program, self.program)
+        """What `carrying` makes, without the parts; moves may have gone from it, or come."""
+        pairs = zip(self.run.program.moves, self.program.moves, strict=True)
+        known = {(carrying.tool, carrying.load): bare.load for carrying, bare in pairs}
+        return _with_loads(
+            program, [known.get((move.tool, move.load), move.load) for move in program.moves]
+        )
 
     def __repr__(self) -> str:
         return in_line(
@@ -79,11 +84,11 @@ class StationRobot:
         )
 
 
-def _with_loads_of(program: Program, other: Program) -> Program:
-    pairs = list(zip(program.moves, other.moves, strict=True))
-    if all(move.load == beside.load for move, beside in pairs):
+def _with_loads(program: Program, loads: Sequence[Load | None]) -> Program:
+    pairs = list(zip(program.moves, loads, strict=True))
+    if all(move.load == load for move, load in pairs):
         return program
-    return program.with_moves(tuple(replace(m, load=beside.load) for m, beside in pairs))
+    return program.with_moves(tuple(replace(move, load=load) for move, load in pairs))
 
 
 @dataclass(frozen=True, slots=True)

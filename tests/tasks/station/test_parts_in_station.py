@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -107,6 +108,14 @@ def test_what_is_carried_weighs_in_a_station_as_with_one_robot(tmp_path: Path) -
         for program in (member.run.program, member.program)
     ]
     assert figures[0] > 1.1 * figures[1]
+
+    # Searches try programs without one of the moves.
+    fewer = list(member.run.program.moves)
+    del fewer[4]
+    statements = [s for s in member.run.program.statements if s is not member.run.program.moves[4]]
+    shorter = replace(member.run.program, statements=tuple(statements))
+    assert list(shorter.moves) == fewer
+    assert all(move.load is None for move in member.bare(shorter).moves)
 
     made = flyby.station_optimize(file, zones_only=True)
     solution = made.solutions["pick"]
