@@ -133,8 +133,10 @@ class Late(Controller):
 
 
 class OffPeriod(Controller):
-    def sample(self, program: Program, timing: Any, period: float | None = None) -> Any:
-        made = super().sample(program, timing, period)
+    def sample(
+        self, program: Program, timing: Any, period: float | None = None, beyond: float = 0.0
+    ) -> Any:
+        made = super().sample(program, timing, period, beyond)
         return replace(made, q=made.q + (period or 0.0) * made.dq)
 
 
