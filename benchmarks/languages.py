@@ -43,6 +43,7 @@ from flyby.core.source.execution.answers import Answers
 from flyby.core.source.execution.answers_file import load_answers
 from flyby.core.source.patch.edits import TOLERANCE, difference, reading_of
 from flyby.core.vendor import Vendor
+from flyby.testing.checks.subject import said
 
 TESTS = Path(__file__).parents[1] / "tests"
 CORPUS = TESTS / "corpus"
@@ -227,7 +228,7 @@ def comes_back(program: Program, robot: Robot, language: Language) -> bool:
         with TemporaryDirectory() as folder:
             again = vendor.read_file(stored(sources, Path(folder)), robot=robot)
         # What is no move may name routines and signals that the new files do not declare.
-        moves = Program(program.moves), Program(again.moves)
+        moves = Program(said(program, vendor, robot, again).moves), Program(again.moves)
         return (
             difference(*moves, language.precision) is None and vendor.write(again, robot) == sources
         )
