@@ -7,9 +7,9 @@ sets system variables for one motion. A motion to ``$POS_ACT`` or ``$AXIS_ACT`` 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from ....core.errors import InputError, LeftOpenError, LostError, SourceError, Span
@@ -22,14 +22,13 @@ from ....core.program.zone import FINE, Zone
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
-from ..syntax.tree import Assign, Expression, Flat, MotionInstruction, Name
+from ..syntax.tree import Assign, Expression, MotionInstruction, Name
 from ..values.data import Data
 from ..values.evaluator import Evaluator
 from ..values.frames import frame_of, pose_of
 from ..values.predefined import MOTION, POSITION
 from ..values.provenance import KrlSource, LeafSource, Sources
 from ..values.scope import Scope, Variable
-from ..values.types import AXES, FRAME_FIELDS, POSES, KrlTypeError, convert
 from ..values.values import (
     Pending,
     Placement,
@@ -37,16 +36,13 @@ from ..values.values import (
     Unknown,
     Value,
     copied,
-    find_unknown,
-    shown,
-    supposed,
-    unplaced,
 )
 from .arcs import beyond
 from .frames import Placements
 from .position import Position
 from .settings import Set, Settings
-from .targets import AXIS_NUMBERS, POSE_NUMBERS, ReadTarget, Targets, is_axes
+from .target_expressions import TargetExpressions
+from .targets import ReadTarget
 from .triggers import Triggers
 
 Common = tuple[Speed, Zone, Tool, WorkObject, Load | None]
@@ -78,13 +74,12 @@ class MotionReader:
     evaluator: Evaluator
     placements: Placements
     settings: Settings
-    targets: Targets
+    targets: TargetExpressions
     position: Position
     triggers: Triggers
     meter: Meter
     transcript: Transcript
     changed: Callable[[], None]
-    _literals: dict[tuple[int, bool, bool], ReadTarget] = field(default_factory=dict)
 
     def read(self, motion: MotionInstruction, scope: Scope) -> None:
         """Carry out one instruction, with what follows ``WITH`` set for it alone.
@@ -139,7 +134,7 @@ class MotionReader:
         if arc:
             self._arc(motion, scope, placement, start)
             return
-        found = self._target(motion, motion.targets[0], scope, placement, joint)
+        found = self.targets.read(motion, motion.targets[0], scope, placement, joint)
         if not joint:
             if isinstance(found.target, JointTarget):
                 raise SourceError(
@@ -195,8 +190,8 @@ class MotionReader:
         placement: Placement,
         start: Struct | Unknown | None,
     ) -> None:
-        auxiliary = self._target(motion, motion.targets[0], scope, placement, False, via=True)
-        found = self._target(motion, motion.targets[1], scope, placement, False)
+        auxiliary = self.targets.read(motion, motion.targets[0], scope, placement, False, via=True)
+        found = self.targets.read(motion, motion.targets[1], scope, placement, False)
         via, target = auxiliary.target, found.target
         if isinstance(via, JointTarget) or isinstance(target, JointTarget):
             raise SourceError(
@@ -208,7 +203,7 @@ class MotionReader:
             arcs = self._by_angle(motion, motion.angle, scope, start, via, target)
             via_part = MovePart(motion.targets[0].span)
             for read in (auxiliary.sources, found.sources):
-                self._read_by_expression(read.entries)
+                self.targets.read_by_expression(read.entries)
             found = replace(found, sources=Sources(()))
         events = self.triggers.taken()
         for number, (middle, end) in enumerate(arcs, 1):
@@ -287,125 +282,6 @@ class MotionReader:
 
     # -------------------------------------------------------------------------- parts
 
-    def _target(
-        self,
-        motion: MotionInstruction,
-        expression: Expression,
-        scope: Scope,
-        placement: Placement,
-        joint: bool,
-        via: bool = False,
-    ) -> ReadTarget:
-        key = (id(expression), joint, via)
-        if key in self._literals:
-            return self._literals[key]
-        span = expression.span
-        value = self._value(motion, expression, scope)
-        if motion.word.endswith("_rel"):
-            return self._relative(motion, value, placement, via, span)
-        if is_axes(value):
-            found = self.targets.joints(value, span)
-        else:
-            found = self.targets.pose(value, placement, joint, via, span)
-        if found.filled:
-            self._depends_on_last()
-        elif isinstance(expression, Flat):
-            self._literals[key] = found  # loops come by often
-        return found
-
-    def _value(self, motion: MotionInstruction, expression: Expression, scope: Scope) -> Struct:
-        span = expression.span
-        self.evaluator.reader = self.transcript.move_index
-        value = self.evaluator.evaluate(expression, scope)
-        self.evaluator.reader = ELSEWHERE
-        what = f"the target of {motion.word.upper()}"
-        self.evaluator.used_as(value, "target" if "ptp" in motion.word else "e6pos")
-        unknown = find_unknown(value)
-        if unknown is not None:
-            value = self._supposed(value, unknown, what, span)
-        if isinstance(value, Unknown):
-            if isinstance(expression, Name) and self.data.find(expression.name, scope) is None:
-                raise self.evaluator.undeclared(expression, scope, "point")
-            self.evaluator.check_known(value, what, span)
-        if not isinstance(value, Struct):
-            raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
-        if value.type == "":
-            return self._typed(value, "e6axis" if is_axes(value) else "e6pos", span)
-        if value.type in AXES or value.type in POSES:
-            return value
-        raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
-
-    def _supposed(self, value: Value, unknown: Unknown, what: str, span: Span) -> Value:
-        """A target that is not known in all, as far as there are values to take it for."""
-        taken = supposed(value)
-        open_ = find_unknown(taken)
-        if open_ is not None:
-            return value if isinstance(taken, Unknown) else taken
-        self.transcript.notes.count(
-            f"{what} depends on {unknown.reason}, which the text does not say: what is known "
-            f"of it, or 0, is taken; {unknown.answerable}",
-            span,
-        )
-        return unplaced(taken)
-
-    def _typed(self, value: Struct, kind: str, span: Span) -> Struct:
-        """An aggregate without a type as what its components make it."""
-        types = self.data.types
-        if value.fields.keys() <= types[kind].keys():
-            # `Targets` wants numbers, and says so.
-            return Struct(kind, value.fields, value.label, value.shipped, value.moved_by)
-        try:
-            typed = convert(value, kind, types)
-        except KrlTypeError as error:
-            raise SourceError(str(error), span) from None
-        assert isinstance(typed, Struct)
-        return typed
-
-    def _relative(
-        self, motion: MotionInstruction, value: Struct, placement: Placement, via: bool, span: Span
-    ) -> ReadTarget:
-        """The present target and a step."""
-        self.evaluator.check_known(value, f"the target of {motion.word.upper()}", span)
-        self.evaluator.reader = self.transcript.move_index
-        self.evaluator.note_reads(value)
-        self.evaluator.reader = ELSEWHERE
-        self._depends_on_last()
-        axes = is_axes(value)
-        present = self.position.axes(span) if axes else self.position.pose(placement, span)
-        if isinstance(present, Unknown):
-            raise LeftOpenError(f"{motion.word.upper()} goes on from {present.reason}", span)
-        summed = dict(present.fields)
-        names = AXIS_NUMBERS if axes else (*FRAME_FIELDS, *POSE_NUMBERS[8:])
-        for name in names:
-            step = value.fields.get(name)
-            if step is not None:
-                summed[name] = _sum(summed.get(name, 0.0), step)
-        if axes:
-            return self.targets.joints(Struct("e6axis", summed), span)
-        if motion.frame == "tool":
-            summed.update(frame_of(pose_of(present.fields) @ pose_of(value.fields)).fields)
-        elif any(value.fields.get(name, 0) != 0 for name in "abc"):
-            turn = pose_of({n: v for n, v in value.fields.items() if n in "abc"})
-            turned = frame_of(turn @ pose_of(present.fields)).fields
-            summed.update({name: turned[name] for name in "abc"})
-        for name in "st":
-            summed.pop(name, None)
-            if name in value.fields:
-                summed[name] = value.fields[name]
-        joint = "ptp" in motion.word
-        found = self.targets.pose(Struct("e6pos", summed), placement, joint, via, span)
-        return replace(found, sources=Sources(()))
-
-    def _depends_on_last(self) -> None:
-        """The last target's numbers are read by the move that comes now as well."""
-        if self.transcript.parts:
-            self._read_by_expression(self.transcript.parts[-1].target.sources)
-
-    def _read_by_expression(self, sources: Iterable[object]) -> None:
-        for source in sources:
-            if source is not None:
-                self.evaluator.reads.by_expression(source, self.transcript.move_index)  # type: ignore[arg-type]
-
     def _common(self, motion: MotionInstruction, joint: bool, placement: Placement) -> Manner:
         """How a move is driven."""
         settings, span, lost = self.settings, motion.span, ""
@@ -478,8 +354,3 @@ def _only_position(found: ReadTarget) -> Sources:
             entries += source.parts()
     turning = range(3, 6)
     return Sources(tuple(None if k in turning else e for k, e in enumerate(entries)))
-
-
-def _sum(present: Value, step: Value) -> float:
-    assert isinstance(step, int | float) and isinstance(present, int | float)
-    return float(present) + float(step)

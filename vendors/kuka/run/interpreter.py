@@ -30,6 +30,7 @@ from ..motion.own_position import OwnPosition
 from ..motion.position import Position
 from ..motion.settings import Settings
 from ..motion.tables import Tables
+from ..motion.target_expressions import TargetExpressions
 from ..motion.targets import Targets
 from ..motion.triggers import Triggers
 from ..syntax.tree import (
@@ -126,7 +127,7 @@ class Interpreter:
             evaluator,
             placements,
             self._settings,
-            targets,
+            TargetExpressions(data, evaluator, targets, position, transcript),
             position,
             self._triggers,
             meter,
