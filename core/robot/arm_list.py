@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -66,6 +66,10 @@ class ArmList:
 
     def listed(self) -> dict[str, Listed]:
         """All arms, by their name without the vendor's."""
+        return dict(self._listed)
+
+    @cached_property
+    def _listed(self) -> dict[str, Listed]:
         return {name: _listed(json.loads(line)) for name, line in self._lines.items()}
 
     def robots(self) -> dict[str, Callable[[], Robot]]:

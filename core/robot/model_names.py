@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from difflib import SequenceMatcher
+from functools import lru_cache
 
 from .arm_list import Listed
 
@@ -31,6 +32,7 @@ _VARIANT = re.compile(r"(?:_+g)?_+0\d$")
 """Of the libraries of simulators: ``IRB120_3_58_01``, ``IRB4600_40_255_G_01``."""
 
 
+@lru_cache(maxsize=4096)  # names of listed arms are looked at for every name that is sought
 def words_of(name: str) -> tuple[str, ...]:
     """What a name consists of: ``IRB 120T-3/0.58`` is irb, 120t, 3 and 0.58."""
     said = _VARIANT.sub("", name.strip().lower().replace(",", "."))
