@@ -14,33 +14,23 @@ from typing import NoReturn
 from weakref import proxy
 
 from ....core.errors import Note, SourceError, Span
-from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.course import Course
 from ....core.source.execution.flow import Flow
-from ....core.source.execution.limits import Meter
 from ....core.source.execution.loops import Loop
-from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE
-from ....core.source.execution.streams import Streaming
-from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
-from ..motion.kinematics import RobotFunctions
-from ..motion.position import Position
-from ..motion.settings import SettingsInForce
 from ..motion.settings_instructions import SETS
-from ..motion.targets import Converter
 from ..syntax import tree
 from ..values.data import Globals
-from ..values.errors import BOOKED, ProgramError
-from ..values.evaluator import Evaluator
-from ..values.scope import NOWHERE, Home, Scope, Snapshot, Variable
+from ..values.errors import ProgramError
+from ..values.scope import Scope, Variable
 from ..values.types import Value, find_unknown, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .entry import MAIN
 from .flow import run_for, run_if, run_test, run_while
+from .host import Finished, RapidHost
 from .instructions import INTERPRETED, MOVING
 from .kept import KEPT, REFUSED
 from .late import call_late, call_named
@@ -60,11 +50,7 @@ class _Jump(Exception):
         self.goto = goto
 
 
-class _Finished(Exception):
-    pass
-
-
-class Interpreter:
+class Interpreter(RapidHost):
     """One run of a program.
 
     Args:
@@ -75,7 +61,6 @@ class Interpreter:
 
     Attributes:
         ran: ids of the routines that were called.
-        left_out: the first move of which nobody knows the target, and why.
     """
 
     def __init__(
@@ -85,33 +70,12 @@ class Interpreter:
         options: ReadOptions,
         external_axes: Sequence[str] | None,
     ) -> None:
-        self.data = data
-        self.settings = SettingsInForce()
-        self.course = Course(options.answers)
-        self.out = Transcript(lambda span: texts[span.file][span.start : span.end], self.course)
-        self.meter = Meter(options.limits, options.executed)
-        self.convert = Converter(self.settings, self.out.notes, external_axes, options.robot)
-        self.position = Position(options.robot, external_axes, options.start)
-        self.functions = RobotFunctions(self.position, self.convert, self.settings)
-        # Expressions call routines, which evaluate expressions: no reference holds the two
-        # together, so that a run is gone, with the syntax tree, as soon as it is over.
+        super().__init__(data, texts, options, external_axes)
         host = proxy(self)
-        self.evaluator = Evaluator(
-            data, self.course, self.out.text_of, host, self.functions.table(), options.signals
-        )
-        self.out.streaming = Streaming(
-            options.robot,
-            lambda move, span: host.streamed(move, span),
-            lambda span: host.lost(span),
-        )
         self.tree = RapidTree(data, lambda: host.home)
         self.analysis = Analysis(self.tree)
         self.flow: Flow[tree.Block] = Flow(self.analysis, host)
-        self.place: object = None
-        self._frames: list[Frame] = []
-        self._booked = 0
         self.ran: set[int] = set()
-        self.left_out: Note | None = None
         self._loops: dict[int, tree.Block] = {}  # bodies of loops that a GOTO closes, by its id
 
     # --------------------------------------------------------------------- the run
@@ -120,7 +84,7 @@ class Interpreter:
         """Execute a procedure to its end; ``main`` as often as the user says."""
         scope = self.data.scope_of(entry)
         before = decisive(self.evaluator, entry.body, scope) if entry.name == MAIN else ()
-        with suppress(_Finished):
+        with suppress(Finished):
             for _ in range(self.course.answers.cycles if entry.name == MAIN else 1):
                 try:
                     self.call(entry, arguments, scope, entry.span)
@@ -141,7 +105,7 @@ class Interpreter:
         stopped = SourceError(f"{said}: the controller stops the program here", span)
         if span is None or not self.meter.moves or not self.out.leaves_open(stopped, span, True):
             raise error
-        raise _Finished
+        raise Finished
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -155,96 +119,6 @@ class Interpreter:
             *self.convert.notes(),
             *self.course.notes(),
         )
-
-    # ------------------------------------------------------ for instruction handlers
-
-    @property
-    def home(self) -> Home:
-        """The module of the routine that is being run."""
-        return self._frames[-1].scope.home if self._frames else NOWHERE
-
-    @property
-    def outputs(self) -> Outputs:
-        """What the program has set its outputs to."""
-        return self.evaluator.outputs
-
-    @property
-    def position_asked(self) -> int:
-        """How often the program has asked where the robot stands."""
-        return self.position.asked
-
-    def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
-        """See `core.source.execution.flow.Host.snapshot`."""
-        scopes = [*self._frames[-1].scope.outwards()]
-        if names is None:
-            scopes += self.data.scopes()
-        found = [s.cells[n] for s in scopes for n in names or written if n in s.cells]
-        for cell in found:
-            # What has not been read yet is evaluated: else its first write would be no change.
-            if cell.pending is not None:
-                with suppress(SourceError):
-                    self.evaluator.settle(cell)
-        if names is None:
-            found = [cell for s in scopes for cell in s.cells.values() if not cell.constant]
-        return Snapshot(found)
-
-    def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
-        """See `core.source.execution.host.Host`: data of modules, not those of routines."""
-        shared = [cell for scope in self.data.scopes() for cell in scope.cells.values()]
-        modules = {id(cell) for cell in shared}
-        found = [(name, self._frames[-1].scope.find(name)) for name in sorted(names)]
-        cells = [c for _, c in found if c is not None and id(c) in modules and not c.constant]
-        return [
-            *(cell.name for cell in cells if self.evaluator.leave_to_others(cell, span)),
-            *(n for n, c in found if c is None and self.evaluator.forget_elsewhere(n)),
-        ]
-
-    def pause(self, text: str, span: Span) -> None:
-        """The robot stands at a loop that waits."""
-        self.out.pause(text, span)
-
-    def note_once(self, kind: str, message: str, span: Span) -> None:
-        """A note, unless one of its kind was taken before."""
-        self.out.notes.once(kind, message, span)
-
-    def text_of(self, expression: tree.Expression) -> str:
-        """An expression as it stands, on one line."""
-        return " ".join(self.out.text_of(expression.span).split())
-
-    def emit_move(self, move: Move, parts: MoveParts) -> None:
-        """Put a move at the end of the program.
-
-        Raises:
-            SourceError: there are too many.
-        """
-        self.meter.move(parts.statement)
-        self.out.emit_move(move, parts)
-        if move.target != self.place:
-            self.place = move.target
-
-    def streamed(self, move: Move, span: Span) -> None:
-        """The robot has driven what a computer has sent."""
-        self.position.moved(move, span)
-        self.place = move.target
-
-    def lost(self, span: Span) -> None:
-        """Nobody knows where the robot is, behind a move that cannot be read."""
-        self.meter.move(span)
-        self.position.lose()
-        self.place = object()
-
-    def leave_out(self, invoke: tree.Invoke, why: str) -> None:
-        """Step over a move that cannot be driven."""
-        if self.open_move(SourceError(why, invoke.span), invoke.span):
-            return
-        self.out.keep(invoke.span, invoke.text, "", stops=True)
-        self.course.decided(invoke.span, f"{why}: the move is left out")
-        self.left_out = self.left_out or Note(why, span=invoke.span)
-
-    def finish(self, message: str, span: Span) -> NoReturn:
-        """End the program here, with a note."""
-        self.out.notes.once("end", message, span)
-        raise _Finished
 
     # -------------------------------------------------------------------- statements
 
@@ -329,7 +203,7 @@ class Interpreter:
 
     def _keyword(self, statement: tree.Keyword, scope: Scope) -> None:
         if statement.word == "exit":
-            raise _Finished
+            raise Finished
         if statement.word == "connect":
             trap = self.data.routine(statement.name, scope.home)
             if trap is not None:
@@ -347,15 +221,6 @@ class Interpreter:
             word = statement.word.upper()
             raise SourceError(f"{word} stands outside an error handler", statement.span)
         raise Retry if statement.word == "retry" else TryNext
-
-    def book_error(self) -> float:
-        """A number for an error of the program's own."""
-        self._booked = min(self._booked + 1, BOOKED)
-        return float(self._booked)
-
-    def set_error(self, number: float) -> None:
-        """What ``ERRNO`` holds."""
-        self.data.errno.value = number
 
     def leave(self) -> NoReturn:
         """RETURN without a value."""
@@ -390,13 +255,6 @@ class Interpreter:
         else:
             step_over_missing(self, statement, scope)
 
-    def open_move(self, error: SourceError, span: Span) -> bool:
-        """Whether the program goes on behind a move that cannot be read, which stays open."""
-        if not self.out.leaves_open(error, span):
-            return False
-        self.lost(span)
-        return True
-
     def _gone_on(self, statement: tree.Invoke, error: SourceError) -> bool:
         """Whether the program goes on behind an instruction that cannot be carried out: a move
         stays open, and of what a setting sets nobody knows the value."""
@@ -423,10 +281,6 @@ class Interpreter:
     def keep(self, statement: tree.Invoke, scope: Scope) -> None:
         """Step over an instruction that does not move the robot; it stays as it stands."""
         keep(self, statement, scope)
-
-    def note_undeclared(self, name: tree.Name) -> None:
-        message = f"'{name.text}' is written and not declared in what is at hand: it is taken to "
-        self.out.notes.count(message + "be declared in a module that is not", name.span)
 
     def _with_present_arguments(self, statement: tree.Invoke, scope: Scope) -> tree.Invoke:
         """Without the arguments that are handed on from absent parameters."""
