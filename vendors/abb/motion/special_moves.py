@@ -15,7 +15,8 @@ from ....core.program.event import Event
 from ..syntax.tree import Invoke, Name
 from ..values.scope import Scope, Variable
 from ..values.types import JOINTTARGET, ROBTARGET, Unknown
-from .moves import OVER_POINT, TO_POINT, Form, MovesHandler, MovesRun, bind_move, drive
+from .move_arguments import MovesRun
+from .moves import OVER_POINT, TO_POINT, Form, MovesHandler, bind_move, drive
 
 # --------------------------------------------------------------------------- searches
 

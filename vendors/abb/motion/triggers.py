@@ -18,6 +18,7 @@ from ..values.outputs import write
 from ..values.records import PER_METRE
 from ..values.scope import Scope
 from ..values.types import NUM, Unknown, Value, mismatch
+from .move_arguments import MovesRun
 from .moves import (
     FORMS,
     OVER_POINT,
@@ -25,7 +26,6 @@ from .moves import (
     TO_POINT,
     Form,
     MovesHandler,
-    MovesRun,
     bind_move,
     drive,
 )

@@ -13,7 +13,8 @@ from ....core.errors import InputError, SourceError
 from ....core.program.move import Wait
 from ....core.source.execution.scopes import alike
 from ....core.source.text.lexer import words
-from ..motion.moves import MOVES, MovesRun
+from ..motion.move_arguments import MovesRun
+from ..motion.moves import MOVES
 from ..motion.settings_instructions import SETTINGS, SettingsRun
 from ..motion.special_moves import SPECIAL_MOVES
 from ..motion.triggers import TRIGGER_DEFINITIONS, TRIGGER_MOVES
