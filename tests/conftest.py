@@ -8,11 +8,13 @@ is chance; so it does not do that here. `pytest --hypothesis-profile=explore` ha
 numbers and a memory of what failed.
 
 One worker a core (see `pyproject.toml`), beside which threads of BLAS would only be in each other's
-way.
+way. Python looks for garbage as seldom as the command line has it: thousands of collected tests are
+none, and to walk through them is a tenth of a run.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 
 import pytest
@@ -20,6 +22,7 @@ from hypothesis import HealthCheck, settings
 from hypothesis.database import DirectoryBasedExampleDatabase
 from hypothesis.internal.conjecture import providers
 
+gc.set_threshold(100_000, 20, 20)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy, not yet imported, reads it once
 
 ORDINARY, EXPLORE = "ordinary", "explore"
