@@ -136,7 +136,9 @@ class StationProver:
             self._motion(name, passing=passes)
             for name, passes in zip((one, other), passing, strict=True)
         )
-        return PairProver(first, second, allowed, self._hand_overs.between(one, other))
+        hand_overs = self._hand_overs
+        handed, awaited = hand_overs.between(one, other), hand_overs.awaited(one, other)
+        return PairProver(first, second, allowed, handed, awaited)
 
     def _variants(self, one: str, other: str) -> Iterator[tuple[PairProver, tuple[bool, bool]]]:
         """Provers of two robots, and which of them passes through zones that waits stand behind."""

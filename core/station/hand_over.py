@@ -17,7 +17,7 @@ import numpy as np
 
 from ..cell.geometry import Mesh
 from ..collision.handled_scenes import scenes_along
-from ..collision.mutual.handed_part import HandedPart
+from ..collision.mutual.handed_part import AwaitedPart, HandedPart
 from ..collision.proof.certificate import SceneOf, certify_stretch
 from ..collision.scene.bodies import BodyKind
 from ..collision.scene.handled_pairs import RESTING
@@ -86,6 +86,14 @@ class HandOvers:
         found = (each.between(one, other) for each in self.followed)
         return [part for part in found if part is not None]
 
+    def awaited(self, one: str, other: str) -> list[AwaitedPart]:
+        """Those that one of two robots gets of a third one."""
+        return [
+            AwaitedPart(int(each.declared.taker != one), each.declared.taken, each.moves[1])
+            for each in self.followed
+            if each.declared.taker in (one, other) and each.declared.giver not in (one, other)
+        ]
+
     def of(self, part: HandedPart, one: str, other: str) -> FollowedHandOver:
         """The one that `between` has made a part of."""
         return next(each for each in self.followed if each.between(one, other) == part)
@@ -117,9 +125,28 @@ def check_hand_overs(station: RobotStation) -> list[_Met]:
 
     Raises:
         InputError: a part does not change hands once, robots do not stop there, or the two cells
-            have it in different places or shapes.
+            have it in different places, shapes or weights.
     """
-    return [_met(station, declared) for declared in station.hand_overs]
+    lying = {name: member.handling for name, member in station.members.items()}
+    found: list[_Met] = []
+    for declared in _in_turn(station.hand_overs):
+        met = _met(station, declared, lying)
+        # Who hands it on has it as it was taken.
+        lying[declared.taker] = _moved(lying[declared.taker], declared.taken, met.fix)
+        found.append(met)
+    return found
+
+
+def _in_turn(hand_overs: Sequence[HandOver]) -> list[HandOver]:
+    """Those by which a robot gets a part come before those by which it hands it on."""
+    found: list[HandOver] = []
+    left = list(hand_overs)
+    while left:
+        gets = {(each.taker, each.taken) for each in left}
+        ready = [each for each in left if (each.giver, each.given) not in gets]
+        found += ready or left
+        left = [each for each in left if each not in found]
+    return found
 
 
 def follow_hand_overs(station: RobotStation) -> HandOvers:
@@ -136,19 +163,16 @@ def follow_hand_overs(station: RobotStation) -> HandOvers:
         lying[declared.taker] = _moved(lying[declared.taker], declared.taken, met.fix)
     followed = tuple(_followed(station, met, lying) for met in known)
     handlings = {name: handling for name, handling in lying.items() if handling is not None}
-    for met in known:
-        taker = met.declared.taker
-        handlings[taker] = _absent(handlings[taker], met.declared.taken, met.taken)
     return HandOvers(followed, handlings)
 
 
-def _met(station: RobotStation, declared: HandOver) -> _Met:
+def _met(station: RobotStation, declared: HandOver, lying: Mapping[str, Handling | None]) -> _Met:
     where = "" if station.file is None else f"{station.file}: "
     where += f"hand_over of {declared.giver}.{declared.given}: "
     giver, taker = station.members[declared.giver], station.members[declared.taker]
     try:
         released, taken = _released(station, declared), _taken(station, declared)
-        given, found = _places(station, declared, released)
+        given, found = _places(declared, released, lying)
         moves = _stop(giver, released), _stop(taker, taken)
     except InputError as error:
         raise InputError(f"{where}{error}") from None
@@ -188,11 +212,10 @@ def _changes(station: RobotStation, robot: str, part: str) -> list[ChangeOfHands
 
 
 def _places(
-    station: RobotStation, declared: HandOver, released: ChangeOfHands
+    declared: HandOver, released: ChangeOfHands, lying: Mapping[str, Handling | None]
 ) -> tuple[PlacedPart, PlacedPart]:
     """The part where the giver lets go of it, and where it is at first in the taker's cell."""
-    members = station.members
-    giver, taker = (members[name].handling for name in (declared.giver, declared.taker))
+    giver, taker = (lying[name] for name in (declared.giver, declared.taker))
     assert giver is not None and taker is not None
     given = _part(_behind(giver, released), declared.given)
     found = _part(taker.arrangements[0], declared.taken)
@@ -203,6 +226,11 @@ def _places(
         raise InputError(
             f"its shape is another one than that of {declared.taker}.{declared.taken}: give both "
             "cells the same"
+        )
+    if given.part.load != found.part.load:
+        raise InputError(
+            f"it weighs {_weight(given)}, and {_weight(found)} as {declared.taker}."
+            f"{declared.taken}: give both cells the same mass_kg, centre and inertia"
         )
     off = given.pose.inverse() @ found.pose
     turned = 2.0 * math.acos(min(1.0, abs(off.quaternion[0])))
@@ -216,6 +244,11 @@ def _places(
             f"quat_wxyz = [{w:.6f}, {a:.6f}, {b:.6f}, {c:.6f}] }}"
         )
     return given, found
+
+
+def _weight(placed: PlacedPart) -> str:
+    load = placed.part.load
+    return "nothing" if load is None else f"{load.mass:g} kg"
 
 
 def same_shape(one: PlacedPart, other: PlacedPart) -> bool:
@@ -260,7 +293,7 @@ def _stop(member: StationRobot, change: ChangeOfHands) -> int:
     """The move at whose end a robot stands where it hands a part over.
 
     Raises:
-        InputError: it does not stop there.
+        InputError: it does not stop there, or need not where what it waits for is there in time.
     """
     path = member.run.path
     driven = [move for move in path.route.moves if move <= change.move]
@@ -269,7 +302,9 @@ def _stop(member: StationRobot, change: ChangeOfHands) -> int:
             f"{member.name} hands {change.name!r} over before its first move: drive it there first"
         )
     k = len(driven) - 1
-    if not path.pieces.stop[np.searchsorted(path.pieces.segment, k, side="right")]:
+    passed = () if member.passing is None else member.passing.moves
+    stops = path.pieces.stop[np.searchsorted(path.pieces.segment, k, side="right")]
+    if not stops or any(driven[-1] <= move <= change.move for move in passed):
         span = member.program.moves[driven[-1]].statement
         where = "" if span is None else f"{span}: "
         raise InputError(
@@ -356,17 +391,6 @@ def _moved(handling: Handling | None, name: str, fix: Pose) -> Handling:
     assert handling is not None
     return _changed(
         handling, name, lambda _: True, lambda placed: replace(placed, pose=placed.pose @ fix)
-    )
-
-
-def _absent(handling: Handling | None, name: str, taken: ChangeOfHands) -> Handling:
-    """A part that is not there until it is taken."""
-    assert handling is not None
-    return _changed(
-        handling,
-        name,
-        lambda move: move <= taken.move,
-        lambda placed: replace(placed, gone=True),
     )
 
 

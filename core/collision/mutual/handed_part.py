@@ -1,7 +1,8 @@
 """A part that one robot hands to another: whose it is when, and what may touch it.
 
 Up to where the other one drives off with it, it is the first one's, held or put down; from there on
-it is the other one's. In between both may hold it, and then both stand.
+it is the other one's. In between both may hold it, and then both stand. Where the first one comes
+back before it is taken, it is the other one's that lies there.
 """
 
 from __future__ import annotations
@@ -40,6 +41,50 @@ class HandedPart:
     coming: frozenset[int]
     rests: bool
     unproven: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class AwaitedPart:
+    """A part that one of two robots gets of a third one, which has it until it is taken.
+
+    Args:
+        taker: which of the two gets it, 0 or 1.
+        name: of the part in its cell.
+        move: index of the move at whose end it takes it.
+    """
+
+    taker: int
+    name: str
+    move: int
+
+
+class AwaitedPairs:
+    """The pairs of bodies of two robots in which a part is none before it is taken.
+
+    Args:
+        part: that a third robot hands over.
+        motions: of the one and of the other.
+        pairs: (P, 2), their bodies.
+    """
+
+    def __init__(
+        self, part: AwaitedPart, motions: tuple[RobotMotion, RobotMotion], pairs: IntArray
+    ) -> None:
+        self._part, self._taker = part, motions[part.taker]
+        copy = np.array([own.body.thing == part.name for own in self._taker.bodies], np.bool_)
+        self._its = copy[pairs[:, part.taker]]
+
+    def skipped(self, i: IntArray, j: IntArray, pair: IntArray) -> NDArray[np.bool_]:
+        """As `HandedPairs.skipped`."""
+        moves = self._taker.moves[(i, j)[self._part.taker]]
+        return np.asarray(self._its[pair] & (moves <= self._part.move))
+
+    def skipped_at(
+        self, _: tuple[FloatArray, FloatArray], moves: tuple[IntArray, IntArray], count: int
+    ) -> NDArray[np.bool_]:
+        """As `HandedPairs.skipped_at`."""
+        own = moves[self._part.taker][:, None]
+        return np.asarray(self._its[np.arange(count)[None]] & (own <= self._part.move))
 
 
 class HandedPairs:
@@ -104,10 +149,13 @@ class HandedPairs:
     ) -> NDArray[np.bool_]:
         mine, theirs = self._mine[pair], self._theirs[pair]
         given, taken = self._part.moves
+        # Before it is taken the taker's is there for the giver alone that has left it.
+        brings = (moves[0] <= given) | self._leaving[moves[0]]
+        waits = theirs & (moves[1] <= taken) & brings
         put_down = (moves[0] > given) | giver_stands
         away = self._leaving[moves[0]] | giver_stands
         out = mine & (theirs | (moves[1] > taken) | (self._coming[moves[1]] & put_down))
-        return np.asarray(out | (theirs & taker_stands & away))
+        return np.asarray(out | waits | (theirs & taker_stands & away))
 
     def _behind(self) -> int:
         """The move on which the taker drives off; its last one where it does not."""

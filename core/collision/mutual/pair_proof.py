@@ -19,7 +19,7 @@ from ..distance.coal_engine import CoalEngine
 from ..distance.containment import Nesting
 from ..distance.engine import BodyPoses
 from .conflict import Conflict, ConflictCause, PairVerdict
-from .handed_part import HandedPairs, HandedPart
+from .handed_part import AwaitedPairs, AwaitedPart, HandedPairs, HandedPart
 from .interval_tree import interval_tree, near_pairs
 from .meetings import InTurn, Meetings
 from .pair_bounds import PairBounds, bound_measured, bound_pairs, place_solids
@@ -48,6 +48,7 @@ class PairProver:
         one, other: their motions.
         allowed: pairs of names of things that may touch, of the one and of the other.
         handed: parts that one of them hands to the other.
+        awaited: parts that one of them gets of a third robot.
     """
 
     def __init__(
@@ -56,6 +57,7 @@ class PairProver:
         other: RobotMotion,
         allowed: Sequence[tuple[str, str]] = (),
         handed: Sequence[HandedPart] = (),
+        awaited: Sequence[AwaitedPart] = (),
     ) -> None:
         self.one, self.other = one, other
         self.pairs: IntArray = np.array(
@@ -72,7 +74,10 @@ class PairProver:
         self._engine = CoalEngine(solids, Nesting(solids))
         self._count = len(solids)
         self.handed = tuple(handed)
-        self._handed = [HandedPairs(part, (one, other), self.pairs) for part in handed]
+        self._without: list[HandedPairs | AwaitedPairs] = [
+            *(HandedPairs(part, (one, other), self.pairs) for part in handed),
+            *(AwaitedPairs(part, (one, other), self.pairs) for part in awaited),
+        ]
 
     def prove(self, clearance: float, meetings: Meetings, budget: int = BUDGET) -> PairVerdict:
         """Whether the two keep a clearance of each other.
@@ -114,7 +119,7 @@ class PairProver:
     def skipped(self, items: IntArray) -> NDArray[np.bool_]:
         """Which items (K, 3) are none, as a part changes hands there."""
         out = np.zeros(len(items), dtype=np.bool_)
-        for pairs in self._handed:
+        for pairs in self._without:
             out |= pairs.skipped(*items.T)
         return out
 
@@ -172,7 +177,7 @@ class PairProver:
             bound = measure(hulls, self.pairs + shift, R, p, least[0], found.numbers)
             if moves is not None:
                 gone = ~self._there(moves[0][part], moves[1][part])
-                for handed in self._handed:
+                for handed in self._without:
                     at, own = (q[part], other[part]), (moves[0][part], moves[1][part])
                     gone |= handed.skipped_at(at, own, len(self.pairs))
                 found.distance[gone] = bound[gone] = np.inf

@@ -24,6 +24,7 @@ from flyby.core.handling.arrangement import PlacedPart
 from flyby.core.handling.handling import Handling
 from flyby.core.station.actions import actions_of
 from flyby.core.station.clock import Schedule, StationClock
+from flyby.core.station.hand_over import check_hand_overs
 from flyby.core.station.station import StationRobot
 from flyby.tasks.results.stations import DrivenStation
 from flyby.tasks.setup import setup_of_program
@@ -37,6 +38,15 @@ def causes(made: DrivenStation) -> set[ConflictCause]:
     (pair,) = made.clearances
     assert pair.interlocked is not None
     return {conflict.cause for conflict in pair.interlocked.conflicts.values()}
+
+
+def with_table(folder: Path) -> None:
+    """Under the bar where it changes hands."""
+    table = '[[obstacle]]\nname = "table"\nbox_mm = [300, 200, 20]\n'
+    table += "pose = { xyz_mm = [-800, 0, 329.5] }\n"
+    for cell in ("left.toml", "right.toml"):
+        text = (folder / cell).read_text("utf-8")
+        (folder / cell).write_text(text + table, "utf-8")
 
 
 def test_two_arms_hold_one_part_and_one_lets_go(tmp_path: Path) -> None:
@@ -81,12 +91,24 @@ def test_who_drives_off_before_the_other_has_let_go_tears_the_part(tmp_path: Pat
 def test_a_part_put_down_may_be_taken_later(tmp_path: Path) -> None:
     file = hand_over(tmp_path, ["held"])
     assert causes(flyby.station(file)) == {ConflictCause.DROPPED}
-    table = '[[obstacle]]\nname = "table"\nbox_mm = [300, 200, 20]\n'
-    table += "pose = { xyz_mm = [-800, 0, 329.5] }\n"
-    for cell in ("left.toml", "right.toml"):
-        text = (tmp_path / cell).read_text("utf-8")
-        (tmp_path / cell).write_text(text + table, "utf-8")
+    with_table(tmp_path)
     assert flyby.station(file).clear
+
+
+def test_who_has_put_a_part_down_keeps_off_it(tmp_path: Path) -> None:
+    """The giver comes back for nothing before the taker may come: neither has it then."""
+    file = hand_over(tmp_path, ["held"])
+    with_table(tmp_path)
+    text = (tmp_path / "giver.script").read_text("utf-8")
+    brought, last = "  set_standard_digital_out(1, True)\n", text.strip().splitlines()[-2:]
+    again = "  movel(p[-0.65, 0, {}, 0, 3.1416, 0], a=0.8, v=0.4)\n"
+    for height, clear in ((0.396, True), (0.394, False)):
+        back = again.format(0.5) + again.format(height) + again.format(0.5)
+        back += f"{last[0]}\n{brought}end\n"
+        (tmp_path / "giver.script").write_text(text.replace(brought, "")[:-4] + back, "utf-8")
+        made = flyby.station(file)
+        assert made.clear == clear
+        assert causes(made) == (set() if clear else {ConflictCause.NEAR})
 
 
 def test_what_two_cells_say_of_one_part_must_agree(tmp_path: Path) -> None:
@@ -96,6 +118,9 @@ def test_what_two_cells_say_of_one_part_must_agree(tmp_path: Path) -> None:
     text = (tmp_path / "right.toml").read_text("utf-8")
     (tmp_path / "right.toml").write_text(text.replace("[400.0, 60", "[401, 60"), "utf-8")
     with pytest.raises(InputError, match="its shape is another one"):
+        flyby.station(file, no_proof=True)
+    (tmp_path / "right.toml").write_text(text.replace("mass_kg = 2", "mass_kg = 3"), "utf-8")
+    with pytest.raises(InputError, match=r"weighs 2 kg, and 3 kg as right.bar: give both"):
         flyby.station(file, no_proof=True)
     (tmp_path / "right.toml").write_text(text, "utf-8")
     whole = file.read_text("utf-8")
@@ -111,6 +136,38 @@ def test_what_two_cells_say_of_one_part_must_agree(tmp_path: Path) -> None:
     file.write_text(cut.split("[[other]]")[0] + "[links]" + cut.split("[links]")[1], "utf-8")
     with pytest.raises(InputError, match=r"if one robot hands it to the other.*\[\[hand_over\]\]"):
         flyby.station(file, no_proof=True)
+
+
+def test_a_part_does_not_change_hands_in_a_zone_that_a_robot_may_pass(tmp_path: Path) -> None:
+    """What the taker waits for behind it may be there already: then it takes the bar on its way."""
+    file = hand_over(tmp_path)
+    text = (tmp_path / "taker.script").read_text("utf-8")
+    zone = text.replace("v=0.15)", "v=0.15, r=0.03)")
+    assert zone != text
+    (tmp_path / "taker.script").write_text(zone, "utf-8")
+    with pytest.raises(InputError, match=r"taker.script:\d+.*right hands 'bar' over where it does"):
+        flyby.station(file)
+
+
+def test_who_hands_a_part_on_has_it_as_it_was_taken(tmp_path: Path) -> None:
+    """The second cell has the bar 1.5 mm off; the third where that one lets go of it."""
+    file = hand_over(tmp_path, at="-800, 1.5, 370")
+    taker, cell = ((tmp_path / name).read_text("utf-8") for name in ("taker.script", "right.toml"))
+    whole, end = taker.rsplit("end\n", 1)[0], "  set_standard_digital_out(0, {})\nend\n"
+    (tmp_path / "taker.script").write_text(whole + end.format("False"), "utf-8")
+    bare = whole.replace("  set_standard_digital_out(0, True)\n", "")
+    (tmp_path / "third.script").write_text(bare + end.format("True"), "utf-8")
+    there = cell.replace("-800, 1.5, 370", "-800, 451.5, 470")
+    (tmp_path / "third.toml").write_text(there.replace("[-1600, 0, 0]", "[-1600, 0, 5]"), "utf-8")
+    third = '[robot.third]\nprogram = "third.script"\ncell = "third.toml"\n'
+    onward = '[[hand_over]]\npart = "right.bar"\nto = "third.bar"\n'
+    text = file.read_text("utf-8").replace("[[hand_over]]", f"{third}{onward}[[hand_over]]")
+    file.write_text(text, "utf-8")
+    station = flyby.station(file, no_proof=True).station
+    first, second = check_hand_overs(station)
+    assert [met.declared.giver for met in (first, second)] == ["left", "right"]
+    for met in (first, second):
+        assert abs(met.fix.position[1]) == pytest.approx(1.5e-3, abs=1e-5)
 
 
 # Sampled
