@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import FloatArray
 from ..errors import InputError, Note
-from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
+from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal, levels
 from .actions import Action
 from .pace import ClockPace
 from .plc import Plc
@@ -47,6 +47,7 @@ class Schedule:
         waits: in their order.
         lag: s by which the motion is behind its command.
         pace: at which its own time passes.
+        ready: waits that held it up for no time, and s for which what they wait for was there.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Schedule:
     waits: tuple[Spell, ...]
     lag: float = 0.0
     pace: ClockPace = field(default_factory=ClockPace.steady)
+    ready: tuple[tuple[Action, float], ...] = ()
 
     def clocked(self, own: FloatArray) -> FloatArray:
         """The station's time of spans of the robot's own (L, 2) s: from when, until when."""
@@ -134,6 +136,7 @@ class _Robot:
     next: int = 0
     since: float | None = None
     waits: list[Spell] = field(default_factory=list)
+    ready: list[tuple[Action, float]] = field(default_factory=list)
     end: float = np.inf
 
     @property
@@ -250,6 +253,7 @@ class StationClock:
                 self._go_on(robot, now)
             case WaitSignal(condition, longest):
                 if self._holds(robot, condition):
+                    robot.ready.append((action, now - self._last_change(robot, condition)))
                     self._go_on(robot, now)
                     return
                 robot.since = now
@@ -340,6 +344,12 @@ class StationClock:
             return True
         return self._levels.get(key, False) == condition.on
 
+    def _last_change(self, robot: _Robot, condition: Condition) -> float:
+        """When a signal that a condition looks at changed for the last time; never is -infinite."""
+        keys = {signal_key(f"{robot.name}.{level.name}") for level in levels(condition)}
+        changed = (change.time for change in reversed(self._changes) if change.name in keys)
+        return next(changed, -np.inf)
+
     def _note(self, robot: _Robot, message: str) -> None:
         span = robot.current.span
         where = "" if span is None else f"{span}: "
@@ -352,5 +362,8 @@ class StationClock:
             if robot.since is not None:
                 waits.append(Spell(robot.current, robot.since, np.inf))
             begin = self._station.members[name].begins
-            schedules[name] = Schedule(name, begin, robot.end, tuple(waits), robot.lag, robot.pace)
+            ready = tuple(robot.ready)
+            schedules[name] = Schedule(
+                name, begin, robot.end, tuple(waits), robot.lag, robot.pace, ready
+            )
         return StationRun(schedules, tuple(self._changes), tuple(self._notes.values()))

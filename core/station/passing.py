@@ -6,8 +6,10 @@ controller may pass through it, so that path is driven, too, and proofs are made
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
+from itertools import combinations
 from typing import NamedTuple
 
 from ..dialect import SignalWords
@@ -23,6 +25,8 @@ from .clock import StationClock, StationRun
 from .station import RobotStation
 
 _ROUNDS = 8
+_MOST_UNSURE = 4
+"""Places at which the jitter says whether a robot stops, of which each combination is looked at."""
 _TOUCHING = 1.0 - 1e-9
 """Share of a segment from which the zones at its ends have been shrunk until they touch."""
 
@@ -115,43 +119,87 @@ def zones_overlap(stopping: Run, passed: Run) -> bool:
 
 
 def passed_in_time(
-    station: RobotStation, actions: Mapping[str, tuple[Action, ...]]
-) -> Passed | None:
+    station: RobotStation, actions: Mapping[str, tuple[Action, ...]], jitter: float
+) -> list[Passed] | None:
     """The station in which robots pass through zones where what they wait for is there in time.
+
+    Where that hangs on less than the jitter, a robot may stop or pass, and there is one of each.
 
     Args:
         station: with its robots stopping everywhere.
         actions: of these.
+        jitter: s by which each robot may be early or late.
 
     Returns:
-        None where no robot passes.
+        Empty where no robot passes; None where it hangs on the jitter at too many places.
     """
     which = {
         name: set(member.passing.moves)
         for name, member in station.members.items()
         if member.passing is not None
     }
+    made = _passed(station, actions, which)
     for _ in range(_ROUNDS):
-        members, doings = dict(station.members), dict(actions)
-        for name, moves in which.items():
-            known = members[name].passing
-            assert known is not None
-            if moves:
-                run, doings[name] = known.drive(moves)
-                members[name] = replace(members[name], run=run)
-        if not any(which.values()):
-            return None
-        made = replace(station, members=members)
-        clocked = StationClock(made, doings).run()
         held = {
-            name: {s.action.move for s in clocked.schedules[name].waits if s.end > s.begin} & moves
+            name: {s.action.move for s in made.run.schedules[name].waits if s.end > s.begin} & moves
             for name, moves in which.items()
         }
         if not any(held.values()):
-            return Passed(made, doings, clocked)
+            break
         for name, moves in held.items():
             which[name] -= moves
-    return Passed(made, doings, clocked)
+        made = _passed(station, actions, which)
+    unsure = list(_unsure(made, which, 2.0 * jitter))
+    if len(unsure) > _MOST_UNSURE:
+        return None
+    found = []
+    for count in range(len(unsure) + 1):
+        for flipped in combinations(unsure, count):
+            chosen = {
+                name: moves ^ {move for other, move in flipped if other == name}
+                for name, moves in which.items()
+            }
+            if any(chosen.values()):
+                found.append(_passed(station, actions, chosen))
+    return found
+
+
+def _passed(
+    station: RobotStation,
+    actions: Mapping[str, tuple[Action, ...]],
+    which: Mapping[str, Collection[int]],
+) -> Passed:
+    """The station whose robots pass behind some moves."""
+    members, doings = dict(station.members), dict(actions)
+    for name, moves in which.items():
+        known = members[name].passing
+        assert known is not None
+        if moves:
+            run, doings[name] = known.drive(moves)
+            members[name] = replace(members[name], run=run)
+    made = replace(station, members=members)
+    return Passed(made, doings, StationClock(made, doings).run())
+
+
+def _unsure(
+    made: Passed, which: Mapping[str, Collection[int]], within: float
+) -> Iterator[tuple[str, int]]:
+    """Robots and moves behind which a robot passes or stops by less than some s."""
+    for name, moves in which.items():
+        known, schedule = made.station.members[name].passing, made.run.schedules[name]
+        assert known is not None
+        waited = Counter[int]()
+        for spell in schedule.waits:
+            waited[spell.action.move] += spell.end - spell.begin
+        # It looks ahead, from where the zone begins.
+        late = {
+            action.move
+            for action, ready in schedule.ready
+            if ready < within + action.time - action.soonest
+        }
+        for move in known.moves:
+            if move in late if move in moves else waited[move] < within:
+                yield name, move
 
 
 def _between(program: Program) -> list[tuple[int, list[Wait | Opaque]]]:

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 
 JITTER = 50e-3
 """s."""
+_UNSURE = (
+    "the jitter says at many waits behind zones whether the robot stops there or passes: in time no "
+    "more is proven than at any time"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,10 +83,14 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
         options.say("sweeping motions")
         prover = StationProver(station, ordered)
         clearances = prover.all(run, options.jitter, orders, options.say)
-        quicker = passed_in_time(station, actions)
-        if quicker is not None:
+        quicker = passed_in_time(station, actions, options.jitter)
+        if quicker is None:
+            # Any of the paths may be driven then.
+            clearances = [replace(pair, in_time=pair.any_time) for pair in clearances]
+            notes.append(Note(_UNSURE))
+        for passed in quicker or ():
             options.say("the same where robots pass through zones that waits stand behind")
-            clearances = _both(clearances, quicker, options.jitter)
+            clearances = _both(clearances, passed, options.jitter)
     found: list[Saving] = []
     if options.interlocks and orders is not None and clearances:
         options.say("looking for interlocks that hold robots up needlessly")

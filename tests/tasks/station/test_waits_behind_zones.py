@@ -73,6 +73,19 @@ def test_what_is_too_late_is_not_passed(tmp_path: Path) -> None:
     assert late.in_time.proven and not late.any_time.proven
 
 
+def test_the_jitter_says_whether_a_robot_passes(tmp_path: Path) -> None:
+    """It waits for less than two may be early: then it passes, and meets the other's hand."""
+    file = corner(tmp_path, "z200")
+    text = file.read_text()
+    actions = flyby.station(file, no_proof=True).actions
+    (comes,), (sets,) = ([action.time for action in actions[name]] for name in ("one", "two"))
+    for late, jitter, proven in ((0.06, 0.01, True), (0.06, 0.05, False)):
+        delay = f"{{ to = \"one.diGo\", delay_ms = {1e3 * (comes - sets + late):.3f} }}"
+        file.write_text(text.replace('= "one.diGo"', f"= {delay}"))
+        (pair,) = flyby.station(file, jitter=jitter).clearances
+        assert pair.in_time.proven is proven, (late, jitter)
+
+
 def test_programs_are_improved_where_it_is_known_what_they_do(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"one: .*one\.mod:\d+.*end the move at a stop"):
         flyby.station_zones(corner(tmp_path, "z200", 1200.0))
