@@ -6,7 +6,6 @@ controller may pass through it, so that path is driven, too, and proofs are made
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
@@ -188,9 +187,10 @@ def _unsure(
     for name, moves in which.items():
         known, schedule = made.station.members[name].passing, made.run.schedules[name]
         assert known is not None
-        waited = Counter[int]()
+        waited = dict.fromkeys(known.moves, 0.0)
         for spell in schedule.waits:
-            waited[spell.action.move] += spell.end - spell.begin
+            if spell.action.move in waited:
+                waited[spell.action.move] += spell.end - spell.begin
         # It looks ahead, from where the zone begins.
         late = {
             action.move

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 JITTER = 50e-3
 """s."""
 _UNSURE = (
-    "the jitter says at many waits behind zones whether the robot stops there or passes: in time no "
-    "more is proven than at any time"
+    "the jitter says at many waits behind zones whether the robot stops there or passes: in time "
+    "no more is proven than at any time"
 )
 
 

@@ -80,7 +80,7 @@ def test_the_jitter_says_whether_a_robot_passes(tmp_path: Path) -> None:
     actions = flyby.station(file, no_proof=True).actions
     (comes,), (sets,) = ([action.time for action in actions[name]] for name in ("one", "two"))
     for late, jitter, proven in ((0.06, 0.01, True), (0.06, 0.05, False)):
-        delay = f"{{ to = \"one.diGo\", delay_ms = {1e3 * (comes - sets + late):.3f} }}"
+        delay = f'{{ to = "one.diGo", delay_ms = {1e3 * (comes - sets + late):.3f} }}'
         file.write_text(text.replace('= "one.diGo"', f"= {delay}"))
         (pair,) = flyby.station(file, jitter=jitter).clearances
         assert pair.in_time.proven is proven, (late, jitter)
