@@ -23,7 +23,8 @@ from ...core.collision.handled_scenes import scenes_along
 from ...core.collision.proof.certificate import SceneOf, certify, scenes_of
 from ...core.collision.proof.verdict import Certificate
 from ...core.errors import InputError, MotionError
-from ...core.handling.handling import ChangeOfHands, handling_of
+from ...core.handling.arrangement import Arrangement
+from ...core.handling.handling import Handling, handling_of
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
 from ...core.program.program import Program
@@ -47,6 +48,8 @@ _FOLLOWED = 3
 _HALVINGS = 3
 _PROVEN = 24
 """Bases that are tried to be proven, the fastest first."""
+_SAME = 1e-4
+"""m, and of quaternions, within which a part is held, or lies, as it did."""
 _CLEARLY = 1e-4
 """s by which a base must be faster to be another one."""
 
@@ -248,16 +251,21 @@ class _Search:
         return self.known[shift]
 
     def _alike(self, robot: Robot) -> bool:
-        """Whether the same parts are taken and released on the same moves from where a robot
-        stands: joint targets move with the base, and parts do not."""
+        """Whether the same parts are taken and released on the same moves and at the same places
+        from where a robot stands: joint targets move with the base, and parts do not."""
         if not self.cell.parts:
             return True
         made = handling_of(self.program, replace(self.cell, robot=robot), self.task.start)
-        return made.changes == self._given_changes
+        given = self._given_handling
+        return made.changes == given.changes and all(
+            one.gone or _at_one_place(one.pose, other.pose)
+            for mine, theirs in zip(_places(made), _places(given), strict=True)
+            for one, other in zip(mine, theirs, strict=True)
+        )
 
     @cached_property
-    def _given_changes(self) -> tuple[ChangeOfHands, ...]:
-        return handling_of(self.program, self.cell, self.task.start).changes
+    def _given_handling(self) -> Handling:
+        return handling_of(self.program, self.cell, self.task.start)
 
     def _scenes(self, placed: PlacedBase) -> SceneOf:
         """The cell along each move, with the robot where it stands."""
@@ -334,3 +342,14 @@ class _Search:
 
 def _is_proven(placed: PlacedBase) -> bool:
     return placed.certificate is not None and placed.certificate.proven
+
+
+def _places(handling: Handling) -> tuple[Arrangement, ...]:
+    """Where parts are on each move, and behind the last."""
+    return (*handling.arrangements, handling.last)
+
+
+def _at_one_place(one: Pose, other: Pose) -> bool:
+    """Whether two poses are one, but for rounding."""
+    off = one.inverse() @ other
+    return math.hypot(*off.position) < _SAME and abs(off.quaternion[0]) > 1.0 - _SAME**2

@@ -115,8 +115,8 @@ def test_a_program_without_a_cell_has_no_clearance() -> None:
 
 
 def test_the_base_of_a_robot_that_carries_parts(cell, tmp_path: Path) -> None:
-    """A joint target at which the bottle is taken moves with the base, and the bottle, of 30 mm
-    radius, does not."""
+    """A joint target at which the bottle is taken moves with the base, and the bottle does not: it
+    would be held elsewhere."""
     short = tmp_path / "pick.script"
     short.write_text(_SHORT, "utf-8")
     made = flyby.place(flyby.read(short, cell=cell()), room="40,0")
@@ -130,10 +130,9 @@ def test_the_base_of_a_robot_that_carries_parts(cell, tmp_path: Path) -> None:
     short.write_text(
         _SHORT.replace("movel(p[-0.45, -0.25, 0.12, 0, 3.1416, 0]", f"movej([{by_joints}]"), "utf-8"
     )
-    program = flyby.read(short, cell=cell(("leaves = true", "leaves = true\nnear_mm = 5")))
-    found = flyby.place(program, room="40,0").found
+    found = flyby.place(flyby.read(short, cell=cell()), room="40,0").found
     assert found.before is not None
-    assert found.best is not None and abs(found.best.shift[0]) <= 0.035 + 1e-9
+    assert found.best is None or found.best.shift == (0.0, 0.0, 0.0, 0.0)
 
 
 def test_the_front_of_a_program_that_carries_parts(
