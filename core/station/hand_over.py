@@ -171,12 +171,27 @@ def _met(station: RobotStation, declared: HandOver, lying: Mapping[str, Handling
     where += f"hand_over of {declared.giver}.{declared.given}: "
     giver, taker = station.members[declared.giver], station.members[declared.taker]
     try:
+        _check_single(station, declared)
         released, taken = _released(station, declared), _taken(station, declared)
         given, found = _places(declared, released, lying)
         moves = _stop(giver, released), _stop(taker, taken)
     except InputError as error:
         raise InputError(f"{where}{error}") from None
     return _Met(declared, released, taken, moves, found.pose.inverse() @ given.pose)
+
+
+def _check_single(station: RobotStation, declared: HandOver) -> None:
+    """A part has one giver and one taker."""
+    givers = [(each.giver, each.given) for each in station.hand_overs]
+    takers = [(each.taker, each.taken) for each in station.hand_overs]
+    for known, robot, part in (
+        (givers, declared.giver, declared.given),
+        (takers, declared.taker, declared.taken),
+    ):
+        if known.count((robot, part)) > 1:
+            raise InputError(
+                f"{robot}.{part} stands in two [[hand_over]]: a part changes hands once"
+            )
 
 
 def _released(station: RobotStation, declared: HandOver) -> ChangeOfHands:

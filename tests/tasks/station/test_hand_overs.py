@@ -132,6 +132,9 @@ def test_what_two_cells_say_of_one_part_must_agree(tmp_path: Path) -> None:
     file.write_text(whole.replace('"left.bar"', '"right.bar"'), "utf-8")
     with pytest.raises(InputError, match="a part of another robot's cell"):
         flyby.station(file, no_proof=True)
+    file.write_text(whole + '[[hand_over]]\npart = "left.bar"\nto = "right.bar"\n', "utf-8")
+    with pytest.raises(InputError, match=r"left.bar stands in two \[\[hand_over\]\]"):
+        flyby.station(file, no_proof=True)
     cut = whole.replace("[[hand_over]]", "[[other]]")
     file.write_text(cut.split("[[other]]")[0] + "[links]" + cut.split("[links]")[1], "utf-8")
     with pytest.raises(InputError, match=r"if one robot hands it to the other.*\[\[hand_over\]\]"):
