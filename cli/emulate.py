@@ -22,6 +22,7 @@ from ..tasks.files.outputs import (
     picture_kind,
     write_all,
 )
+from ..tasks.guess import with_robot
 from ..tasks.pages.of_results import page_bytes
 from ..tasks.read import SourceOptions, read_with
 from .output.console import fail, print_json, print_rich, progress, warn, warn_of
@@ -102,17 +103,22 @@ def emulate(
     inputs = [program, *source.inputs()]
     check_outputs(outputs, inputs, replace_existing=force)
     given = [option for option, path in outputs.items() if path is not None]
+    with progress("looking for the robot"):
+        source, notes = with_robot(program, source)
     if source.entry == ALL:
         if given:
             raise OptionError(f"{given[0]} is of one program: name one entry, not all")
+        warn_of(notes)
         _each(program, source, options, as_json=json)
         return
     with progress("reading the program") as say:
         read = _begun(program, source, each=not given)
         if not isinstance(read, str):
+            read = replace(read, notes=(*notes, *read.notes))
             run = _driven(read, replace(options, report=say))
             say("writing results")
     if isinstance(read, str):
+        warn_of(notes)
         _each(program, source, options, as_json=json, why=read)
         return
     with progress("writing results"):

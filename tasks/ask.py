@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .guess import read_or_guess
 from .options.keywords import by_keywords
-from .read import SourceOptions, read_with
+from .read import SourceOptions
 
 if TYPE_CHECKING:
     from .results.questions import Questions
@@ -30,7 +31,7 @@ def ask_with(source: str | Path, options: SourceOptions) -> Questions:
     from ..core.source.reading import Reading
     from .results.questions import Questions
 
-    program = read_with(source, options)
+    program = read_or_guess(source, options)
     reading = program.reading
     name = Path(reading.main).name if isinstance(reading, Reading) else program.name
     return Questions.of(program.questions, name)

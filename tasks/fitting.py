@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..core.display import counted
 
 if TYPE_CHECKING:
     from ..core.program.program import Program
+    from ..core.robot.arm_list import Listed
     from ..core.robot.model import Robot
     from ..core.vendor import Vendor
 
@@ -34,8 +36,12 @@ def arms_that_fit(program: Program, vendor: Vendor, robot: Robot | None = None) 
     arms = places.taken_by(vendor, all_listed(vendor))
     if not arms:
         return ""
+    lead = "" if robot is None else f"{robot.name} cannot take them all, wherever it comes from; "
+    return f"{lead}of the catalogue {said_to_fit(arms, places.count)}"
+
+
+def said_to_fit(arms: Sequence[Listed], count: int) -> str:
+    """Which arms can take so many places, the first by name."""
     names = ", ".join(arm.name for arm in arms[:_SHOWN])
     more = f" and {len(arms) - _SHOWN} more" if len(arms) > _SHOWN else ""
-    said = counted(places.count, "place")
-    lead = "" if robot is None else f"{robot.name} cannot take them all, wherever it comes from; "
-    return f"{lead}of the catalogue {names}{more} can take the {said} that the program says"
+    return f"{names}{more} can take the {counted(count, 'place')} that the program says"

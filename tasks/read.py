@@ -99,7 +99,7 @@ def read_with(source: str | Path, options: SourceOptions) -> Program:
         return _read_backup(backup, options)
     if options.task is not None:
         raise OptionError(f"{spelt('task')} {options.task}: {source} is no backup with tasks")
-    note = _surrounding(source)
+    note = surrounding(source)
     try:
         setup = setup_of(options)
     except InputError as error:
@@ -185,7 +185,7 @@ def _fitting(source: str | Path, options: SourceOptions) -> list[str]:
     return [said] if said else []
 
 
-def _surrounding(source: str | Path) -> Note | None:
+def surrounding(source: str | Path) -> Note | None:
     """What to do with a program file that lies in a backup."""
     if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
         return None

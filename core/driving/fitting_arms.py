@@ -39,9 +39,15 @@ class TakenPlaces:
     flanges: tuple[tuple[Pose, Configuration | None], ...]
 
     @classmethod
-    def of(cls, program: Program) -> TakenPlaces:
-        """The places of a program that are known; none if external axes have a part in them."""
-        unknown = {q.key.casefold() for q in program.questions if not q.answered}
+    def of(cls, program: Program, *, assumed: bool = False) -> TakenPlaces:
+        """The places of a program that are known; none if external axes have a part in them.
+
+        Args:
+            assumed: whether those count as well that hang on a tool or frame that nobody knows, as
+                it is taken for.
+        """
+        asked = {q.key.casefold() for q in program.questions if not q.answered}
+        unknown = set() if assumed else asked
         postures: dict[tuple[float, ...], None] = {}
         flanges: dict[tuple[float, ...], tuple[Pose, Configuration | None]] = {}
         for move in program.moves:

@@ -144,6 +144,8 @@ def _rank(written: str, asked: tuple[str, ...], arm: Listed) -> int | None:
             begins = len(asked) <= len(words) and all(map(_same, asked, words))
             if begins:
                 found.append(_CALLED if len(asked) == len(words) else _BEGINS)
+        if sorted(asked) == sorted(said):  # KR 210 R3300 K ultra
+            found.append(_CALLED)
         rest = iter(said)
         if all(any(_same(word, other) for other in rest) for word in asked):
             found.append(_HOLDS)

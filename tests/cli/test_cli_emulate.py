@@ -172,7 +172,6 @@ def test_an_unreachable_target_names_line_and_move(flyby: Flyby, small: Small) -
 @pytest.mark.parametrize(
     ("status", "words", "message"),
     [
-        (2, (), "which robot?"),
         (1, ("--robot", "abb/irb664"), "near it are"),
         (1, ("--robot", "kuka/kr3-r540"), "is a program for abb"),
         (1, ("--robot", ROBOT, "--start", "1,2"), "--start: abb/irb6640-180-255 has 6 axes"),

@@ -8,6 +8,7 @@ from flyby.core.errors import LeftOpenError
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot
+from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
 from flyby.vendors.kuka.language import Krl
 
@@ -15,6 +16,7 @@ START = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}"
 POSE = "X 1300,Y 0,Z %s,A 0,B 90,C 0"
 INIT = f"BAS(#INITMOV,0)\n{START}\n"
 P1 = "DECL E6POS XP1={" + POSE % 1000 + ",S 2,T 2}\n"
+MENDED = Answers(goes_on=True, mends=True)
 
 
 def said(program):
@@ -232,3 +234,36 @@ def test_which_of_several_configurations_is_taken_is_said(tmp_path):
     config(tmp_path, 700)
     program = Krl().read_file(main, ReadOptions())
     assert heights(program) == [700] and "differing" not in said(program)
+
+
+def test_a_point_that_nothing_sets_is_asked_for_and_not_taken_for_the_present_one(krl):
+    body = INIT + "FRAME spot\nLIN XP1\nLIN spot\nLIN XP1 C_DIS"
+    program = krl(body, P1)
+    assert heights(program) == [1000, 1000]
+    assert "the target of LIN depends on the value of spot, which nothing sets" in said(program)
+
+
+def test_a_point_that_is_answered_counts_where_it_is_copied_too(krl):
+    body = INIT + "FRAME spot\nFRAME other\nother = spot\nLIN other"
+    spot = "{" + POSE % 900 + "}"
+    assert heights(krl(body, P1, answers=Answers(values={"spot": spot}))) == [900]
+
+
+def test_a_line_that_includes_a_file_is_stepped_over_and_said(krl):
+    src = f'INCLUDE "points.dat"\n\nDEF demo( )\n{INIT}LIN XP1\nEND\n'
+    program = krl(src=src, data=P1, answers=MENDED)
+    assert heights(program) == [1000]
+    assert "KRL includes no files: take the line out" in said(program)
+
+
+def test_a_speed_behind_a_target_is_not_taken_for_a_closed_fold(krl):
+    program = krl(INIT + "LIN XP1 C_DIS VEL=100\nLIN XP1", P1, answers=MENDED)
+    *_, last = program.moves
+    assert round(1000 * last.target.pose.position[2]) == 1000
+    assert "a motion takes no VEL=100 behind its target: set $VEL.CP" in said(program)
+
+
+def test_a_point_of_another_program_says_whose_it_is(krl):
+    files = {"points.dat": f"DEFDAT points\n{P1}ENDDAT\n"}
+    with pytest.raises(LeftOpenError, match=r"points\.dat declares it for its own program alone"):
+        krl("BAS(#INITMOV,0)\nPTP XP1", files=files)

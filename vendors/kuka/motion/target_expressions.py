@@ -94,6 +94,8 @@ class TargetExpressions:
         value = self.evaluator.evaluate(expression, scope)
         self.evaluator.reader = ELSEWHERE
         what = f"the target of {motion.word.upper()}"
+        if isinstance(value, Struct) and not value.fields and isinstance(expression, Name):
+            value = self.evaluator.names.unset(expression, scope, value.type)
         self.evaluator.used_as(value, "target" if "ptp" in motion.word else "e6pos")
         unknown = find_unknown(value)
         if unknown is not None:

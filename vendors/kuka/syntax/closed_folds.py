@@ -24,6 +24,8 @@ _MOTION = re.compile(
     re.IGNORECASE | re.VERBOSE,
 )
 _SEAM = re.compile(r"ARC_?(?:ON|SWI|OFF)\b", re.IGNORECASE)
+_ADDED = re.compile(r"(?:\]|\bC_(?:DIS|PTP|VEL|ORI))[ \t]+(?P<speed>VEL[ \t]*=[ \t]*[.\d]+)", re.I)
+"""What only looks like a closed fold: these show neither an index nor ``C_DIS``."""
 _WAIT = re.compile(r"WAIT[ \t]+Time[ \t]*=[ \t]*(?P<time>[.\d]+)", re.IGNORECASE)
 
 
@@ -43,6 +45,13 @@ def parse_closed(cursor: Cursor) -> tree.Statement:
     if moves is None:
         return tree.Keyword(cursor.source.span(start, start + len(text.rstrip())), CLOSED)
     found = _MOTION.match(text.rstrip())
+    added = _ADDED.search(text)
+    if found is None and added is not None:
+        raise cursor.source.error(
+            f"a motion takes no {added['speed']} behind its target: set $VEL.CP (m/s) or "
+            "$VEL_AXIS (%) before it",
+            start,
+        )
     if found is None:
         raise cursor.source.error(
             "this is a closed fold that does not say where its motion goes: open the fold and "

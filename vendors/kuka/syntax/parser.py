@@ -5,6 +5,7 @@ A descent by hand over the tokens of `lexer`, for its messages and its speed.
 
 from __future__ import annotations
 
+import re
 from pathlib import PurePath
 
 from ....core.errors import Note, ParseError
@@ -14,6 +15,8 @@ from .expressions import parse_indices
 from .lexer import END, NEWLINE, tokenize
 from .statements import CLOSING, parse_block
 from .tree import Block, DataList, Parameter, Routine, Unit
+
+_INCLUDE = re.compile(r"INCLUDE[ \t]+[\"<'\w]", re.IGNORECASE)
 
 
 def parse(source: SourceText) -> Unit:
@@ -50,6 +53,8 @@ def _parse(source: SourceText) -> Unit:
             break
         elif kind in CLOSING:
             raise cursor.unexpected("DEF, DEFFCT or DEFDAT")
+        elif source.damage is not None and _INCLUDE.match(source.text, start):
+            _step_over_include(cursor)
         elif source.damage is not None and not routines and not lists:
             _add_part(cursor, routines, lists)
         else:
@@ -59,6 +64,16 @@ def _parse(source: SourceText) -> Unit:
     if source.damage is not None:
         notes += source.damage.notes()
     return Unit(source, tuple(routines), tuple(lists), tuple(notes))
+
+
+def _step_over_include(cursor: Cursor) -> None:
+    """A line of another language, before the first routine."""
+    error = cursor.source.error(
+        "KRL includes no files: take the line out, and name the files that belong to the program",
+        cursor.start,
+    )
+    cursor.skip_line()
+    cursor.step_over(error)
 
 
 def _add_part(cursor: Cursor, routines: list[Routine], lists: list[DataList]) -> None:

@@ -145,11 +145,23 @@ class Names:
                 return value
             if position is not None:
                 return self._of_position(node, scope, position)
-            text = spelled(node.text, path)
-            return Unknown(f"the value of {text}, which nothing sets", node.span, key=text)
+            return self._unset(node, path)
         if cell.shipped and cell.type == "e6axis" and not path:
             return self._home(node, cell, value)
+        if isinstance(value, Struct) and not value.fields:
+            return self.answers.answer(node, path) or value
         return value
+
+    def unset(self, node: Name, scope: Scope, type_: str) -> Value:
+        """A structure of which nothing sets a component, as the user answers it."""
+        path = self.path(node, scope)
+        answer = self.answers.answer(node, path, QuestionKind.DATUM, type_)
+        return self._unset(node, path) if answer is None else answer
+
+    @staticmethod
+    def _unset(node: Name, path: Path) -> Unknown:
+        text = spelled(node.text, path)
+        return Unknown(f"the value of {text}, which nothing sets", node.span, key=text)
 
     def _home(self, node: Name, cell: Variable, shipped: Value) -> Value:
         """A home that no file at hand says: the user's answer, or KUKA's own, with a note."""

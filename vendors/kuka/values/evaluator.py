@@ -263,6 +263,12 @@ class Evaluator:
             "declare it, name the .dat that does (the program's own, or $config.dat), or say it in "
             f"a file ({spelt('answers')}; `flyby ask` writes one)"
         )
+        keeper = self.data.library.keeper_of(node.name)
+        if keeper is not None:
+            offer = (
+                f"{keeper} declares it for its own program alone; write PUBLIC behind its DEFDAT "
+                f"and GLOBAL before the declaration, or {offer}"
+            )
         return LeftOpenError(unknown_name(kind, node.text, known, offer), node.span)
 
 

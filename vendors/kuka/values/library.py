@@ -16,7 +16,7 @@ from ....core.source.reading import Files
 from ....core.source.text.damage import Damage
 from ....core.source.text.files import SourceText
 from ..syntax.parser import parse
-from ..syntax.tree import Routine, Unit
+from ..syntax.tree import Declaration, Routine, Unit
 from .scope import Module
 
 CONFIG = "$config"
@@ -182,6 +182,16 @@ class Library:
     def global_modules(self) -> Iterator[Module]:
         """Modules that declare data for everybody."""
         return self._candidates(_GLOBAL_DATA)
+
+    def keeper_of(self, name: str) -> str | None:
+        """The file that declares a datum for its own program alone; for messages."""
+        declared = re.compile(rf"(?im)^[^;\r\n]*\b{re.escape(name)}\b")
+        for module in self._candidates(declared):
+            for data_list in module.lists:
+                for statement in data_list.body.statements:
+                    if isinstance(statement, Declaration) and statement.name == name.lower():
+                        return data_list.span.file
+        return None
 
     def routine_names(self, module: Module) -> set[str]:
         """Names of routines that can be called from a module, for messages."""

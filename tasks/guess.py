@@ -1,0 +1,157 @@
+"""The robot of a program that is to be driven where nobody says which it is.
+
+It is the one that the text names, or its folder; else an arm of the catalogue that can take all
+places of the program, the first of them that drives it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.door import spelt
+from ..core.errors import FlybyError, Note
+from .catalogue import registry
+from .fitting import said_to_fit
+from .read import SourceOptions, backup_in, read_undriven, read_with, surrounding
+from .setup import setup_of, start_of
+
+if TYPE_CHECKING:
+    from ..core.program.program import Program
+    from ..core.robot.arm_list import Listed
+    from ..core.vendor import Vendor
+
+_TRIED = 5
+"""Arms that are driven, over all sizes that can take the places."""
+_LONGEST = 400
+"""Moves of a program that is driven by several arms to choose one."""
+_WORDS = 6
+_FOLDERS = 3
+
+
+def with_robot(
+    source: str | Path, options: SourceOptions
+) -> tuple[SourceOptions, tuple[Note, ...]]:
+    """Options that name a robot where something tells of one, and what is to be said of that.
+
+    Raises:
+        FlybyError: what is named is no program.
+    """
+    if options.robot is not None or options.cell is not None:
+        return options, ()
+    if backup_in(source, options) is not None or surrounding(source) is not None:
+        return options, ()
+    found = _guessed(source, options)
+    if found is None:
+        return options, ()
+    arm, why = found
+    said = (
+        f"nobody says which robot it is: {arm.name} is taken: {why}; {spelt('robot')} says another"
+    )
+    return replace(options, robot=arm.name), (Note(said),)
+
+
+def read_or_guess(source: str | Path, options: SourceOptions) -> Program:
+    """The program of a source, for the robot that is named or else for one that it may be for.
+
+    Raises:
+        FlybyError: as `read_with`; nothing tells of a robot.
+    """
+    options, notes = with_robot(source, options)
+    program = read_with(source, options)
+    return replace(program, notes=(*notes, *program.notes))
+
+
+def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] | None:
+    """An arm, and why it is taken."""
+    from ..core.driving.fitting_arms import TakenPlaces
+    from ..core.registry import all_listed
+
+    if isinstance(source, str) and ("\n" in source or not source):
+        return None
+    path = Path(source)
+    program: Program | None = None
+    try:
+        vendor = registry().reader_of(path)
+        program = read_undriven(source, options)
+    except FlybyError:
+        if not path.is_file():
+            return None
+    places = None if program is None else TakenPlaces.of(program)
+    assumed = ""
+    if program is not None and places is not None and not places.count:
+        places = TakenPlaces.of(program, assumed=True)
+        assumed = ", with its unknown tools and frames as they are assumed"
+    arms = [arm for arm in all_listed(vendor) if arm.refused is None]
+    for text, named in _mentioned(path, program, arms):
+        fit = places.taken_by(vendor, named) if places is not None and places.count else []
+        return (*fit, *named)[0], f"{text!r} stands in its text or folder"
+    if places is None or not places.count:
+        return None
+    fit = places.taken_by(vendor, arms)
+    if not fit:
+        return None
+    arm = _first_that_drives(source, options, vendor, fit, len(program.moves) if program else 0)
+    return arm, f"{said_to_fit(fit, places.count)}{assumed}"
+
+
+def _first_that_drives(
+    source: str | Path, options: SourceOptions, vendor: Vendor, arms: list[Listed], moves: int
+) -> Listed:
+    """The arm of some that drives a program without a fault, or with the fewest."""
+    if len(arms) == 1 or moves > _LONGEST:
+        return arms[0]
+    step = max(1, len(arms) // _TRIED)
+    faults: dict[str, int] = {}
+    for arm in arms[::step][:_TRIED]:
+        faults[arm.name] = _faults(source, replace(options, robot=arm.name))
+        if not faults[arm.name]:
+            return arm
+    return min(arms[::step][:_TRIED], key=lambda arm: faults[arm.name])
+
+
+def _faults(source: str | Path, options: SourceOptions) -> int:
+    """How many moves an arm cannot drive."""
+    from ..core.driving.past_faults import drive
+    from ..core.motion.emulator.controller import Controller
+
+    setup = setup_of(options)
+    program = read_with(source, options)
+    try:
+        controller = Controller(setup.vendor, setup.robot)
+        return len(drive(controller, program, start_of(program), None).faults)
+    except FlybyError:
+        return len(program.moves)
+
+
+def _mentioned(
+    path: Path, program: Program | None, arms: list[Listed]
+) -> Iterator[tuple[str, list[Listed]]]:
+    """Arms that the program's files and folders name, and the words, the plainest first."""
+    from ..core.robot.model_names import matching
+    from ..core.source.reading import Reading
+
+    reading = None if program is None else program.reading
+    texts = [file.text for file in reading.files.values()] if isinstance(reading, Reading) else []
+    if not texts:
+        texts = [path.read_text("utf-8", "replace")]
+    folders = path.resolve().parts[-_FOLDERS - 1 : -1]
+    makes = sorted({make[0] for arm in arms if (make := re.match(r"[A-Z]+", arm.model))})
+    name = re.compile(
+        rf"(?<![A-Za-z0-9])(?:{'|'.join(makes)})[ _-]?\d[\w./-]*(?:[ ][\w./-]+){{0,{_WORDS}}}",
+        re.IGNORECASE,
+    )
+    found: dict[str, list[Listed]] = {}
+    for text in (*texts, *folders):
+        for match in name.finditer(text):
+            words = re.split(r"[ ]+", match[0].replace("_", " "))
+            for count in range(len(words), 0, -1):
+                said = " ".join(words[:count])
+                named = matching(said, arms)
+                if named:
+                    found.setdefault(said, named)
+                    break
+    yield from sorted(found.items(), key=lambda item: len(item[1]))

@@ -1,0 +1,78 @@
+"""Programs that are driven though nobody says for which robot they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from flyby.core.errors import OptionError
+from flyby.tasks.guess import read_or_guess, with_robot
+from flyby.tasks.read import SourceOptions
+
+UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+
+
+def rapid(folder: Path, *moves: str, head: str = "") -> Path:
+    file = folder / "a.mod"
+    body = "\n".join(moves)
+    file.write_text(f"MODULE M\n{head}\nPROC main()\n{body}\nENDPROC\nENDMODULE\n", "utf-8")
+    return file
+
+
+def at(x: float, y: float, z: float, tool: str = "tool0") -> str:
+    return f"MoveJ [[{x},{y},{z}],[0,0,1,0],[0,0,0,0],{UNUSED}],v100,fine,{tool};"
+
+
+def taken(file: Path) -> tuple[str | None, str]:
+    options, notes = with_robot(file, SourceOptions())
+    assert options.robot is None or isinstance(options.robot, str)
+    return options.robot, " ".join(note.message for note in notes)
+
+
+def test_an_arm_that_drives_the_program_is_taken_and_said(tmp_path: Path) -> None:
+    file = rapid(tmp_path, at(1700, 100, 900), at(1700, 200, 900))
+    robot, said = taken(file)
+    program = read_or_guess(file, SourceOptions())
+    assert robot is not None and program.setup.robot.name == robot
+    assert f"nobody says which robot it is: {robot} is taken: " in said
+    assert "can take the 2 places that the program says; robot says another" in said
+    assert said in program.notes[0].message
+
+
+@pytest.mark.parametrize(
+    ("head", "robot"),
+    [("! Cell 3: IRB 1600-6/1.45, pick", "abb/irb1600-6-145"), ("! (IRB1600_6_145)", None)],
+)
+def test_the_arm_that_the_text_names_goes_first(
+    tmp_path: Path, head: str, robot: str | None
+) -> None:
+    found, said = taken(rapid(tmp_path, at(600, 0, 600), at(600, 50, 600), head=head))
+    assert found == (robot or "abb/irb1600-6-145")
+    assert "stands in its text or folder" in said
+
+
+def test_a_folder_names_the_arm_too(tmp_path: Path) -> None:
+    folder = tmp_path / "cell_irb4600-60-205"
+    folder.mkdir()
+    found, said = taken(rapid(folder, at(1200, 0, 900), at(1200, 50, 900)))
+    assert found == "abb/irb4600-60-205" and "'irb4600-60-205' stands in" in said
+
+
+def test_what_hangs_on_an_unknown_tool_counts_where_nothing_else_does(tmp_path: Path) -> None:
+    robot, said = taken(rapid(tmp_path, at(1700, 0, 900, "tGun"), at(1700, 90, 900, "tGun")))
+    assert robot is not None
+    assert "with its unknown tools and frames as they are assumed" in said
+
+
+def test_a_program_that_says_no_place_asks_for_its_robot(tmp_path: Path) -> None:
+    file = rapid(tmp_path, "MoveJ pNowhere,v100,fine,tool0;")
+    assert taken(file) == (None, "")
+    with pytest.raises(OptionError, match="which robot"):
+        read_or_guess(file, SourceOptions())
+
+
+def test_who_names_a_robot_is_heard(tmp_path: Path) -> None:
+    file = rapid(tmp_path, at(600, 0, 600))
+    options = SourceOptions(robot="abb/irb120-3-058")
+    assert with_robot(file, options) == (options, ())
