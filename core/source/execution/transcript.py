@@ -147,6 +147,11 @@ class Transcript:
         self._statements.append(move)
         self.parts.append(parts)
 
+    def replace_last_move(self, move: Move) -> None:
+        """Put a move in the place of the last one, which has turned out to go further."""
+        moves = (k for k, s in enumerate(self._statements) if not isinstance(s, Wait | Opaque))
+        self._statements[max(moves)] = move
+
     def called(self, span: Span) -> None:
         """A routine of the program is entered by the call at a place."""
         self.calls.append(Call(self.text_of(span), len(self._statements), span))

@@ -11,8 +11,9 @@ from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE
+from ..motion.jogs import PARAMETERS, JogsRun, jog
 from ..motion.kinematics import KINEMATICS
-from ..motion.moves import MovesRun, move
+from ..motion.moves import move
 from ..motion.settings import CALLS, SettingsRun, change
 from ..syntax.tree import Block, Call, MethodCall, Statement
 from ..values.answers import answer, answered, used_as
@@ -37,7 +38,7 @@ REMOTE = Kept("call remote procedures and add-ons", device=True)
 _UNKNOWN_TIME = Kept("wait for a time that is not known", stops=True)
 
 
-class CallsRun(MovesRun, SettingsRun, Protocol):
+class CallsRun(JogsRun, SettingsRun, Protocol):
     """What calls ask of a run.
 
     Attributes:
@@ -232,6 +233,8 @@ def _other(run: CallsRun, node: Call, scope: Scope) -> Value:
     if entry is not None:
         if entry is ADD_ONS:
             run.outputs.forget()
+        if name in PARAMETERS and not run.course.answers.streams and jog(run, node, scope):
+            return Unknown(f"what {name} returns", span)
         if entry is STREAMS:
             run.guided.append((name, span))
             run.out.left_out.append(streamed(name, span))

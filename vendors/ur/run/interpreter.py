@@ -23,6 +23,7 @@ from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import MoveParts, Transcript
 from ....core.source.reading import ReadOptions
+from ..motion.jogs import Jog
 from ..motion.kinematics import joints_of
 from ..motion.position import Position
 from ..motion.settings import Settings, spoiled
@@ -79,6 +80,7 @@ class Interpreter:
         entered: names of the functions that have run.
         threads: that were started.
         inside: names of the threads that are being carried out.
+        jogged: the last motion by `speedj` or `speedl` that was carried out.
         guided: functions by which something else than the program moves the robot, and where.
     """
 
@@ -101,6 +103,7 @@ class Interpreter:
         self.threads: list[threads.Started] = []
         self.inside: list[str] = []
         self.guided: list[tuple[str, Span]] = []
+        self.jogged: Jog | None = None
         self.out = Transcript(texts.text, self.course)
         self.out.streaming = Streaming(options.robot, self.position.moved, self.position.left_out)
         self._carried = 0
