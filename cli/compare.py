@@ -16,10 +16,7 @@ from .output.console import print_json, print_rich, print_table, progress, warn
 from .parameters import AsJson, Force, PageFile, with_options
 
 if TYPE_CHECKING:
-    from ..identification.logs import LoggedRun
-    from ..identification.prediction import Prediction
     from ..identification.residuals import Figures
-    from ..identification.time_scale import TimeScale
     from ..tasks.results.comparison import Comparison
 
 
@@ -58,7 +55,7 @@ def compare(
     for note in found.notes:
         warn(note)
     if json:
-        print_json(_json(found.prediction, found.run, found.scale))
+        print_json(_json(found))
         return
     _tell(found)
     for path in (*([] if plot is None else [plot]), *paged):
@@ -73,9 +70,7 @@ def _tell(found: Comparison) -> None:
     print_rich(f"{found.run.name} on {compared.robot.name}: log less emulation")
     print_table(COLUMNS, found.rows())
     print_rich(
-        f"the robot took {found.longer} emulated: "
-        f"{aligned.logged_moving:.3f} s logged, {aligned.moving:.3f} s emulated "
-        f"(ratio {f.cycle_time_ratio:.4f})",
+        found.times_said,
         f"laid on the emulation, the log begins at {f.offset:+.4f} s, and is "
         f"{1e3 * abs(f.drift):.1f} ms {'behind' if f.drift > 0 else 'ahead'} at its end",
         f"{len(aligned.rows)} of {len(log.t)} samples compared, every {1e3 * log.period:.3g} ms "
@@ -84,10 +79,11 @@ def _tell(found: Comparison) -> None:
     )
 
 
-def _json(compared: Prediction, run: LoggedRun, scale: TimeScale | None) -> dict[str, Any]:
+def _json(found: Comparison) -> dict[str, Any]:
     """SI units, in the keys."""
     import numpy as np
 
+    compared, run, scale = found.prediction, found.run, found.scale
     log, aligned = compared.log, compared.alignment
     place = np.abs(compared.residuals.joint_path).max(axis=0)
     moment = np.abs(compared.residuals.joint_time).max(axis=0)
@@ -100,6 +96,16 @@ def _json(compared: Prediction, run: LoggedRun, scale: TimeScale | None) -> dict
         "axes": [
             {"name": name, "path_max": float(a), "time_max": float(b)}
             for name, a, b in zip(compared.robot.axis_names, place, moment, strict=True)
+        ],
+        "timed": run.timed,
+        "moves": [
+            {
+                "move": one.move + 1,
+                "emulated_s": one.emulated,
+                "logged_s": one.logged,
+                "path_max_m": one.off,
+            }
+            for one in found.moves
         ],
         "samples": len(log.t),
         "compared": len(aligned.rows),

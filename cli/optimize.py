@@ -86,7 +86,8 @@ def optimize(
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     if is_station(program):
-        _station(program, source, options, release or (), places, json)
+        refuse_given([], (), plot=plot, also=other)
+        _station(program, source, options, release or (), places, json, report)
         return
     if release:
         raise OptionError("--release names outputs of a station's robots; this is one program")
@@ -126,6 +127,7 @@ def _station(
     release: Sequence[str],
     places: FilePlaces,
     json: bool,
+    page: Path | None,
 ) -> None:
     """The programs of all robots of a station."""
     from ..tasks.station.optimize import StationOptimizeOptions, station_optimize_with
@@ -138,7 +140,11 @@ def _station(
     given = {name: getattr(options, name) for name in taken}
     wanted = StationOptimizeOptions(release=release, **given)
     changed_station(
-        file, lambda say: station_optimize_with(file, replace(wanted, report=say)), places, json
+        file,
+        lambda say: station_optimize_with(file, replace(wanted, report=say)),
+        places,
+        json,
+        page,
     )
 
 

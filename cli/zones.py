@@ -70,7 +70,8 @@ def zones(
     """
     places = FilePlaces(out, in_place, [program, *source.inputs()], force)
     if is_station(program):
-        _station(program, source, options, places, json)
+        refuse_given([], (), plot=plot, unproven=unproven)
+        _station(program, source, options, places, json, report)
         return
     places.check()
     check_page(report, places.inputs, force)
@@ -95,7 +96,12 @@ def zones(
 
 
 def _station(
-    file: Path, source: SourceOptions, options: ZoneOptions, places: FilePlaces, json: bool
+    file: Path,
+    source: SourceOptions,
+    options: ZoneOptions,
+    places: FilePlaces,
+    json: bool,
+    page: Path | None,
 ) -> None:
     """Zones of all robots of a station."""
     from ..tasks.station.zones import StationZoneOptions, station_zones_with
@@ -104,7 +110,7 @@ def _station(
     refuse_given([source, options], taken)
     wanted = StationZoneOptions(**{name: getattr(options, name) for name in taken})
     changed_station(
-        file, lambda say: station_zones_with(file, replace(wanted, report=say)), places, json
+        file, lambda say: station_zones_with(file, replace(wanted, report=say)), places, json, page
     )
 
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sized
+from collections.abc import Callable, Iterable, Sized
+from typing import TypeVar
+
+T = TypeVar("T")
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
 
@@ -36,3 +39,16 @@ def in_line(text: str) -> str:
     """How a value shows itself: ``<text>`` in one line, cut with a sign where it is too long."""
     line = " ".join(shown(text).split())
     return f"<{line if len(line) <= MOST - 2 else line[: MOST - 3] + '…'}>"
+
+
+def alike(things: Iterable[T], said: Callable[[T], str]) -> list[list[T]]:
+    """Things of which the same is said but for numbers, each kind in the order of its first.
+
+    Args:
+        things: in their order.
+        said: of one.
+    """
+    kinds: dict[str, list[T]] = {}
+    for thing in things:
+        kinds.setdefault(re.sub(r"-?[\d.]+", "0", said(thing)), []).append(thing)
+    return list(kinds.values())

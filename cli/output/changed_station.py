@@ -13,6 +13,7 @@ from ...core.door import spelt
 from ...core.errors import OptionError
 from ...tasks.files.outputs import write_in
 from ...tasks.files.places import FilePlaces
+from ...tasks.pages.file import check_page, write_page
 from .console import print_json, print_rich, print_table, progress, warn_of
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def changed_station(
     make: Callable[[Callable[[str], object]], ChangedStation],
     places: FilePlaces,
     json: bool,
+    page: Path | None = None,
 ) -> None:
     """Improve a station's programs, write them, and tell.
 
@@ -38,16 +40,21 @@ def changed_station(
         make: does it; is given what tells what is being done.
         places: where the files go.
         json: whether the report is JSON.
+        page: the file of its page; None for none.
 
     Raises:
         typer.Exit: a robot is not proven to keep clear of its cell.
     """
     places.check()
+    check_page(page, places.inputs, places.replace_existing)
     written: list[Path] = []
     with progress("reading the station") as say:
         made = make(say)
         if made.changed and made.proven:
             written = _written(made, places)
+        if page is not None:
+            say("making the page")
+            written = [*written, *write_page(page, made)]
     if json:
         print_json({**made.as_json(), "files": [str(path) for path in written]})
     else:
@@ -56,16 +63,20 @@ def changed_station(
         raise typer.Exit(1)
 
 
-def refuse_given(options: Sequence[TaskOptions], taken: Sequence[str]) -> None:
+def refuse_given(options: Sequence[TaskOptions], taken: Sequence[str], **others: object) -> None:
     """Refuse options of commands on one program that a station's own file answers.
 
     Args:
         options: as they were given.
         taken: names of those that a station takes too.
+        others: further options by name, false or None where they are not given.
 
     Raises:
         OptionError: naming the first.
     """
+    for name, value in others.items():
+        if value:
+            raise OptionError(f"{spelt(name)} does not go with a station")
     for one in options:
         usual = type(one)()
         for field in fields(one):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 import sys
 import time
@@ -14,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 from unicodedata import combining, east_asian_width
 
-from ...core.display import shown
+from ...core.display import alike, shown
 from ...core.errors import Note
 from ...core.files.archive import named_as_packed
 
@@ -217,12 +216,9 @@ def warn(message: str) -> None:
 def warn_of(notes: Iterable[Note]) -> None:
     """Print warnings, those that say the same of several places in one line: the first, and how
     many there are."""
-    like: dict[str, list[Note]] = {}
-    for note in notes:
-        like.setdefault(re.sub(r"[\d.]+", "0", note.message), []).append(note)
-    for alike in like.values():
-        more = f" (and {len(alike) - 1} like it)" if len(alike) > 1 else ""
-        warn(f"{alike[0]}{more}")
+    for same in alike(notes, lambda note: note.message):
+        more = f" (and {len(same) - 1} like it)" if len(same) > 1 else ""
+        warn(f"{same[0]}{more}")
 
 
 def complain_of_fault(message: str) -> None:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...core.display import counted
+from ...core.display import alike, counted
 from ...core.driving.driven_program import Fault
 from ...core.errors import Span
 from ...core.program.program import Program
@@ -133,11 +132,10 @@ def print_notes(report: Report, questions: Sequence[Question] = ()) -> None:
 
 
 def _print_faults(faults: Sequence[Fault]) -> None:
-    alike: dict[str, dict[tuple[object, str], list[Fault]]] = {}
-    for fault in faults:
-        kind = alike.setdefault(re.sub(r"[-\d.]+", "0", fault.message), {})
-        kind.setdefault((fault.span or fault.move, fault.message), []).append(fault)
-    for places in alike.values():
+    for kind in alike(faults, lambda fault: fault.message):
+        places: dict[tuple[object, str], list[Fault]] = {}
+        for fault in kind:
+            places.setdefault((fault.span or fault.move, fault.message), []).append(fault)
         lines = [*places.values()]
         shown = lines if len(lines) <= MOST_ALIKE else lines[:1]
         for same in shown:

@@ -248,6 +248,8 @@ class PageTrack:
         ghost: whether it is drawn as a ghost beside the solid one of its group.
         group: tracks of one group are shown together.
         tool: index of the tool among the arm's where there are no moves.
+        takes: s that are said beside its name where these are not its duration; None where they
+            are.
     """
 
     name: str
@@ -266,3 +268,4 @@ class PageTrack:
     ghost: bool = False
     group: str = ""
     tool: int = 0
+    takes: float | None = None

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import isotonic_regression
 
+from ...core.arrays import FloatArray
 from ...core.driving.driven_program import DrivenProgram
 from ...core.motion.command.trajectory import Trajectory
 from ...drawing.page.content import (
@@ -14,7 +17,7 @@ from ...drawing.page.content import (
     PageRow,
     PageTable,
 )
-from ...drawing.page.curves import CHARTS, Curve
+from ...drawing.page.curves import CHARTS, SPEED, Curve
 from ...drawing.page.packing import Quantised
 from ...drawing.page.track_content import (
     PageChart,
@@ -22,6 +25,7 @@ from ...drawing.page.track_content import (
 )
 from ...drawing.page.tracks import page_motion
 from ..results.comparison import COLUMNS, Comparison
+from ..results.report import target_text
 from ..results.runs import Run
 from .program_tables import moves_table, page_shares, time_tables
 from .run_page import PageDraft, cell_of, made_by
@@ -39,6 +43,20 @@ _MOST = 20_000
 """Samples of a log that a page shows."""
 _MEETINGS = 400
 """Places at which both are held together."""
+_WINDOW = 0.02
+"""s over which the speed of a logged TCP is taken at least: its places are noisy."""
+_SURE = 2e-3
+"""s by which emulated times of samples may fall."""
+_MOVES = (
+    PageColumn("#"),
+    PageColumn("move"),
+    PageColumn("target"),
+    PageColumn("line"),
+    PageColumn("logged", "s", 3),
+    PageColumn("emulated", "s", 3),
+    PageColumn("longer", "s", 3, bar=True),
+    PageColumn("path off", "mm", 3, bar=True),
+)
 
 
 def comparison_page(found: Comparison) -> Page:
@@ -47,23 +65,19 @@ def comparison_page(found: Comparison) -> Page:
     run = Run.of(DrivenProgram.faultless(compared.driven), compared.robot)
     draft = PageDraft()
     draft.drive([run], cell_of(run), ["emulated"])
+    draft.tracks[-1] = replace(draft.tracks[-1], takes=compared.alignment.moving)
     draft.tracks.append(measured_track(compared, draft))
     tables = [
+        _moves(found, run, draft),
         _figures(found),
         *time_tables(run, draft.sources, 0),
         moves_table(run.report, draft.sources, 0),
         *_notes(found),
     ]
-    aligned = compared.alignment
     return Page(
         f"{found.run.name} on {compared.robot.name}",
         "compare",
-        {
-            "emulated": f"{aligned.moving:.3f} s",
-            "logged": f"{aligned.logged_moving:.3f} s",
-            "the robot took": f"{found.longer} emulated",
-            "path off by": f"{1e3 * found.figures.path_max:.2f} mm at most",
-        },
+        _facts(found),
         page_shares(run.program, run.report),
         draft.arms,
         draft.tracks,
@@ -73,6 +87,19 @@ def comparison_page(found: Comparison) -> Page:
         together=_meetings(compared),
         made_by=made_by(),
     )
+
+
+def _facts(found: Comparison) -> dict[str, str]:
+    """Figures at the top: times of the motion, what the robot rests before and behind left out."""
+    aligned = found.prediction.alignment
+    facts = {
+        "in motion, emulated": f"{aligned.moving:.3f} s",
+        "logged": f"{aligned.logged_moving:.3f} s",
+        "path off by": f"{1e3 * found.figures.path_max:.2f} mm at most",
+    }
+    if found.run.timed:
+        facts["the robot took"] = f"{found.longer} emulated"
+    return facts
 
 
 def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> PageTrack:
@@ -85,10 +112,16 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
     """
     found, aligned = compared.residuals, compared.alignment
     rows = slice(None, None, max(1, len(found.t) // _MOST))
-    q = compared.log.q[aligned.rows][rows]
     t = found.t[rows] - aligned.offset
-    begin = float(t[0])
-    late = 1e3 * (t - aligned.time[rows])
+    late = 1e3 * _late(t, aligned.time[rows])
+    path = 1e3 * found.path[rows]
+    speed = 1e3 * _speed(found.t, found.tcp)[rows]
+    values = np.column_stack(
+        [compared.log.q[aligned.rows][rows], found.tcp[rows], path, late, speed]
+    )
+    t, values = _from_zero(t, values)
+    q, tcp = values[:, : compared.robot.size], values[:, -6:-3]
+    path, late, speed = values[:, -3:].T
     dq = np.gradient(q, t, axis=0) if len(t) > 1 else np.zeros_like(q)
     count = len(t)
     motion = Trajectory(
@@ -96,28 +129,55 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
         q,
         dq,
         np.zeros_like(q),
-        found.tcp[rows],
+        tcp,
         np.tile([1.0, 0.0, 0.0, 0.0], (count, 1)),
         np.zeros(count),
         np.zeros(count, dtype=np.int64),
     )
-    path = 1e3 * found.path[rows]
     curves = [
         Curve("TCP", APART, path, max(0.01 * float(path.max()), 0.002)),
         Curve("log", LATE, late, max(0.01 * float(np.abs(late).max()), 0.1)),
+        Curve("TCP", SPEED, speed, max(0.003 * float(speed.max()), 0.1)),
     ]
     made, channels = page_motion(motion, compared.robot, curves)
     tool = compared.driven.program.moves[0].tool.name
     return PageTrack(
         "measured",
         len(draft.arms) - 1,
-        float(t[-1]) - begin,
+        float(t[-1]),
         made,
         channels=channels,
         ghost=True,
         group=group,
         tool=[one.name for one in draft.arms[-1].tools].index(tool),
+        takes=aligned.logged_moving,
     )
+
+
+def _late(t: FloatArray, time: FloatArray) -> FloatArray:
+    """(K,) s that samples are behind: about stops from which the robot goes back the way it came,
+    their places may be taken for those of either way, and what is known before and behind counts.
+    """
+    rising = isotonic_regression(time).x
+    known = np.abs(time - rising) < _SURE
+    return np.asarray(np.interp(t, t[known], (t - time)[known])) if known.any() else t - time
+
+
+def _from_zero(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Samples (K,), (K, C) from the emulation's zero on: until the log begins it stands still."""
+    kept = t > 0.0
+    first = np.array([np.interp(0.0, t, column) for column in values.T])
+    return np.append(0.0, t[kept]), np.vstack([first, values[kept]])
+
+
+def _speed(t: FloatArray, tcp: FloatArray) -> FloatArray:
+    """(K,) m/s of logged places (K, 3), each over `_WINDOW` and two samples about it at least."""
+    index = np.arange(len(t))
+    before = np.minimum(np.searchsorted(t, t - 0.5 * _WINDOW), np.maximum(index - 1, 0))
+    behind = np.searchsorted(t, t + 0.5 * _WINDOW, "right") - 1
+    behind = np.maximum(behind, np.minimum(index + 1, len(t) - 1))
+    spans = np.maximum(t[behind] - t[before], 1e-9)
+    return np.asarray(np.linalg.norm(tcp[behind] - tcp[before], axis=1) / spans)
 
 
 def _meetings(compared: Prediction) -> Quantised:
@@ -125,8 +185,30 @@ def _meetings(compared: Prediction) -> Quantised:
     found, aligned = compared.residuals, compared.alignment
     rows = np.unique(np.linspace(0, len(found.t) - 1, _MEETINGS).round().astype(np.int64))
     emulated = np.maximum.accumulate(aligned.time[rows])
-    logged = found.t[rows] - found.t[0]
+    logged = np.maximum(found.t[rows] - aligned.offset, 0.0)
     return Quantised(np.column_stack([emulated, logged]), 1e-4)
+
+
+def _moves(found: Comparison, run: Run, draft: PageDraft) -> PageTable:
+    """A row a move: what it took, and how far the log is off its path."""
+    rows = []
+    for one in found.moves:
+        move = run.report.moves[one.move]
+        source, line = draft.sources.place(0, move.span)
+        cells = (
+            float(move.number),
+            move.kind,
+            target_text(move),
+            float(line) if line else None,
+            one.logged,
+            one.emulated,
+            one.longer,
+            None if one.off is None else 1e3 * one.off,
+        )
+        t = move.begin if move.driven else None
+        rows.append(PageRow(cells, "", 0, t, one.move, source, line))
+    told = found.times_said
+    return PageTable("By move", _MOVES, rows, f"{told[0].upper()}{told[1:]}.")
 
 
 def _figures(found: Comparison) -> PageTable:

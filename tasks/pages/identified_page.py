@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -75,8 +76,8 @@ def identified_page(made: IdentifiedModel) -> Page:
     if judged is not None and not judged.better:
         notes.insert(0, f"What was fitted {judged.verdict} the model before it.")
     tables = [
-        PageTable("Parameters", _PARAMETERS, _parameters(made)),
         PageTable("Runs", _LEFT, [_left(one, tracks) for one in worst], _SAID),
+        PageTable("Parameters", _PARAMETERS, _parameters(made)),
         PageTable("Cycle times", _TIMES, [_times(one, tracks) for one in worst]),
         _corners(worst, tracks, draft),
         PageTable(
@@ -86,12 +87,7 @@ def identified_page(made: IdentifiedModel) -> Page:
     return Page(
         f"How {fitted.runs[0].robot.name} is driven",
         "identify",
-        {
-            "parameters": str(fitted.parameters.size),
-            "runs": str(len(made.outcomes)),
-            "loss": f"{fitted.before:.4g} → {fitted.after:.4g}",
-            "worst path": f"{1e3 * worst[0].after.figures.path_max:.3f} mm",
-        },
+        _facts(made),
         (),
         draft.arms,
         draft.tracks,
@@ -107,6 +103,21 @@ def identified_page(made: IdentifiedModel) -> Page:
 _SAID = "Log less emulation, greatest. Path: time aside; at their time: after one constant offset."
 
 
+def _facts(made: IdentifiedModel) -> dict[str, str]:
+    """Figures at the top: the greatest of all runs, before the fit and after it."""
+    path, off = [], []
+    for found in ([one.before for one in made.outcomes], [one.after for one in made.outcomes]):
+        path.append(1e3 * max(one.figures.path_max for one in found))
+        off.append(100.0 * max(abs(one.figures.cycle_time_ratio - 1.0) for one in found))
+    return {
+        "path off by, at most": f"{path[0]:.3f} → {path[1]:.3f} mm",
+        "cycle times off by": f"{off[0]:.1f} → {off[1]:.1f} %",
+        "runs": str(len(made.outcomes)),
+        "parameters": str(made.fit.parameters.size),
+        "loss": f"{made.fit.before:.4g} → {made.fit.after:.4g}",
+    }
+
+
 def _drive(draft: PageDraft, one: Outcome) -> None:
     """A run as emulated before and after the fit, and as measured."""
     name = one.run.name
@@ -115,6 +126,8 @@ def _drive(draft: PageDraft, one: Outcome) -> None:
         for found in (one.before, one.after)
     ]
     draft.drive(runs, None, ["before the fit", "after it"], name)
+    for k, found in enumerate((one.before, one.after), len(draft.tracks) - len(runs)):
+        draft.tracks[k] = replace(draft.tracks[k], takes=found.alignment.moving)
     draft.tracks.append(measured_track(one.after, draft, name))
 
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     )
 
 BUILDERS = {
+    "ChangedStation": "changed_station_page",
     "Comparison": "comparison_page",
     "DrivenStation": "station_page",
     "Findings": "findings_page",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from ...core.display import alike
 from ...core.errors import FlybyError, Note
 from ...core.program.program import Program
 from ...drawing.page.content import (
@@ -206,7 +207,7 @@ def faults_table(report: Report, sources: SourceList, track: int) -> PageTable |
 def notes_rows(
     notes: Sequence[Note], report: Report, sources: SourceList, track: int
 ) -> list[PageTable]:
-    """A table with a row a note; nothing without any.
+    """A table with a row a kind of note, the first of it; nothing without any.
 
     Args:
         notes: of the result.
@@ -215,13 +216,15 @@ def notes_rows(
         track: of the run.
     """
     rows = []
-    for note in notes:
+    for same in alike(notes, lambda note: note.message):
+        note = same[0]
+        more = f" (and {len(same) - 1} like it)" if len(same) > 1 else ""
         source, line = sources.place(track, note.span)
         number = None if note.move is None else float(note.move + 1)
         t = None
         if note.move is not None and note.move < len(report.moves):
             move = report.moves[note.move]
             t = move.begin if move.driven else None
-        cells = (float(line) if line else None, number, note.message)
+        cells = (float(line) if line else None, number, note.message + more)
         rows.append(PageRow(cells, "warning", track, t, note.move, source, line))
     return [PageTable("Notes", _NOTES, rows)] if rows else []

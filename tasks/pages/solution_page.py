@@ -79,7 +79,7 @@ def solution_page(made: Solution, cell: Cell | None = None) -> Page:
     ]
     return Page(
         f"{made.program.name} on {last.robot.name}",
-        _kind(made),
+        kind_of(made),
         _facts(made),
         [s for k, run in enumerate(runs) for s in page_shares(run.program, run.report, k)],
         draft.arms,
@@ -92,7 +92,8 @@ def solution_page(made: Solution, cell: Cell | None = None) -> Page:
     )
 
 
-def _kind(made: Solution) -> str:
+def kind_of(made: Solution) -> str:
+    """What was done."""
     return "zones" if type(made).__name__ == "ZoneSolution" else "optimize"
 
 
@@ -123,8 +124,17 @@ def _of_run(run: Run, track: int, draft: PageDraft) -> Iterator[PageTable]:
     yield moves_table(run.report, draft.sources, track)
 
 
-def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> PageTable:
-    """A row a move that is otherwise, and the seconds that it saves, those that save most first."""
+def changes_table(
+    made: Solution, runs: Sequence[Run], draft: PageDraft, track: int = 1
+) -> PageTable:
+    """A row a move that is otherwise, and the seconds that it saves, those that save most first.
+
+    Args:
+        made: the solution.
+        runs: of the program before and after.
+        draft: of the page.
+        track: of the program after.
+    """
     before, after = runs
     old, new = made.original.moves, made.program.moves
     alike = len(old) == len(new)
@@ -140,7 +150,7 @@ def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> Page
         same = was is not None and was.zone == move.zone and point is None
         if same and change is None and (saved is None or abs(saved) < 5e-4):
             continue
-        source, line = draft.sources.place(1, move.statement)
+        source, line = draft.sources.place(track, move.statement)
         cells: tuple[PageCell, ...] = (
             float(index + 1),
             float(line) if line else None,
@@ -154,7 +164,7 @@ def changes_table(made: Solution, runs: Sequence[Run], draft: PageDraft) -> Page
         )
         report = after.report.moves[index]
         t = report.begin if report.driven else None
-        rows.append((saved or 0.0, PageRow(cells, "", 1, t, index, source, line)))
+        rows.append((saved or 0.0, PageRow(cells, "", track, t, index, source, line)))
     rows.sort(key=lambda row: -row[0])
     return PageTable("Changes", _CHANGES, [row for _, row in rows])
 

@@ -65,12 +65,24 @@ _SAVINGS = (
 
 def station_page(made: DrivenStation) -> Page:
     """The page of a station."""
-    return _StationPage(made).page()
+    return StationPage(made).page()
 
 
-class _StationPage:
-    def __init__(self, made: DrivenStation) -> None:
+class StationPage:
+    """The page of a station, and what is behind it.
+
+    Args:
+        made: the station.
+        distances: whether distances between robots are drawn although none are proven.
+
+    Attributes:
+        draft: robots and tracks, a track a robot.
+        runs, clocks: of each robot.
+    """
+
+    def __init__(self, made: DrivenStation, distances: bool = False) -> None:
         self.made = made
+        self.distances = distances or bool(made.clearances)
         self.draft = PageDraft()
         self.last = _until(made)
         self.clocks: list[OtherClock] = []
@@ -96,7 +108,7 @@ class _StationPage:
             draft.tracks[-1] = replace(track, flags=flags)
             self.clocks.append(clock)
             self.runs.append(run)
-        if made.clearances:
+        if self.distances:
             self._distances(grid)
         charts = [PageChart(BETWEEN, "Distance between robots", "mm"), *CHARTS]
         return Page(
@@ -108,7 +120,7 @@ class _StationPage:
             draft.tracks,
             draft.files(),
             list(self._tables()),
-            charts if made.clearances else CHARTS,
+            charts if self.distances else CHARTS,
             gantt=[*self._robots(), *self._signals()],
             notes=made.findings(),
             chosen=list(made.station.members).index(made.bottleneck),

@@ -8,11 +8,15 @@ import numpy as np
 
 from ...core.notebook import PictureCurve, page, picture, table
 from ...identification.logs import LoggedRun
+from ...identification.move_times import MoveTime, move_times
 from ...identification.prediction import Prediction
 from ...identification.residuals import Figures
 from ...identification.time_scale import TimeScale
 
 COLUMNS = (("", "left"), ("greatest", "right"), ("99 %", "right"), ("RMS", "right"))
+
+_WORTH_SAYING = 0.002
+"""Share of the time in motion that a move is off by before it is named."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,36 @@ class Comparison:
         if abs(share) < 0.05:
             return "as long as"
         return f"{abs(share):.1f} % {'longer' if share > 0 else 'less time'} than"
+
+    @property
+    def moves(self) -> list[MoveTime]:
+        """What each move took, in the log and emulated."""
+        return move_times(self.prediction)
+
+    @property
+    def times_said(self) -> str:
+        """How long the robot took, in a sentence; and at which move it differs most."""
+        aligned = self.prediction.alignment
+        both = f"{aligned.logged_moving:.3f} s logged, {aligned.moving:.3f} s emulated"
+        if not self.run.timed:
+            return (
+                "how fast the robot was asked to drive is not known, so times say nothing of the "
+                f"emulation ({both})"
+            )
+        said = (
+            f"the robot took {self.longer} emulated: {both} in motion "
+            f"(ratio {self.figures.cycle_time_ratio:.4f})"
+        )
+        moves = self.moves
+        if len(moves) < 2:
+            return said
+        most = max(moves, key=lambda one: abs(one.longer))
+        if abs(most.longer) < _WORTH_SAYING * aligned.moving:
+            return said
+        span = self.run.program.moves[most.move].statement
+        line = "" if span is None else f", line {span.line}"
+        how = "longer" if most.longer > 0.0 else "less"
+        return f"{said}; the most at move {most.move + 1}{line}: {abs(most.longer):.3f} s {how}"
 
     def rows(self) -> list[tuple[str, ...]]:
         """What is left in space and in time, and the same as the log was read."""

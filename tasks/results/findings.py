@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...core.display import counted
+from ...core.display import alike, counted
 from ...core.lint.finding import Finding, Severity
 from ..files.source_places import short_place
 
@@ -15,6 +15,9 @@ COLUMNS = (
     ("finding", "left"),
     ("what to do", "left"),
 )
+
+MOST_ALIKE = 5
+"""Findings that differ in numbers alone that a table lists one by one; JSON has all of them."""
 
 
 class Findings(tuple[Finding, ...]):
@@ -35,10 +38,21 @@ class Findings(tuple[Finding, ...]):
         return ", ".join(told) or "nothing found"
 
     def rows(self, program: Path | None = None) -> list[tuple[str, ...]]:
-        """A row for each finding; places in the program's own file are lines alone."""
-        return [
-            (short_place(program, f.span), str(f.severity), f.rule, f.message, f.fix) for f in self
-        ]
+        """A row a finding, of more than `MOST_ALIKE` the first, with how many are like it.
+
+        Args:
+            program: places in whose own file are lines alone.
+        """
+        kinds = alike(self, lambda one: f"{one.rule} {one.message}")
+        many = {id(same[0]): len(same) - 1 for same in kinds if len(same) > MOST_ALIKE}
+        left = {id(one) for same in kinds if len(same) > MOST_ALIKE for one in same[1:]}
+        rows: list[tuple[str, ...]] = []
+        for one in self:
+            if id(one) not in left:
+                more = f" (and {many[id(one)]} like it)" if id(one) in many else ""
+                place = short_place(program, one.span)
+                rows.append((place, str(one.severity), one.rule, one.message + more, one.fix))
+        return rows
 
     def __repr__(self) -> str:
         return f"<Findings: {self.said}>"

@@ -33,6 +33,16 @@ def test_json_has_every_finding_with_its_place(flyby: Flyby, small: Small) -> No
     assert cut["fix"]
 
 
+def test_findings_that_are_alike_are_one_row(flyby: Flyby, small: Small) -> None:
+    """The first, with its line and how many there are; JSON has them all."""
+    path = small(*(f"MoveL Offs(p1,{4 * k},{k % 2},0),v500,z10,tool0" for k in range(1, 30)))
+    told = flyby("check", path, "--robot", ROBOT)
+    assert told.stdout.count("zone-cut") == 1, told.output
+    every = json.loads(flyby("check", path, "--robot", ROBOT, "--json").stdout)["findings"]
+    cut = [one for one in every if one["rule"] == "zone-cut"]
+    assert f"(and {len(cut) - 1} like" in told.stdout and len(cut) > 20
+
+
 def test_an_error_among_the_findings_ends_with_status_1(flyby: Flyby, small: Small) -> None:
     path = small("MoveL Offs(p1,9000,0,0), v500, fine, tool0")
     result = flyby("check", path, "--robot", ROBOT)

@@ -54,6 +54,25 @@ def test_options_of_one_program_are_refused(flyby: Flyby, station: Path, command
     assert made.exit_code == 2 and "--entry does not go with a station" in made.stderr
 
 
+def test_a_page_of_the_station_is_written(flyby: Flyby, station: Path, tmp_path: Path) -> None:
+    page = tmp_path / "zones.html"
+    told = json.loads(flyby("zones", station, "--report", page, "--json").stdout)
+    assert told["files"] == [str(page)] and page.stat().st_size > 500_000
+    again = flyby("zones", station, "--report", page)
+    assert again.exit_code == 2 or again.exit_code == 1
+    assert "zones.html" in again.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [("zones", "--plot", "x.png"), ("zones", "--unproven"), ("optimize", "--also", "ur5e")]
+)
+def test_options_without_a_meaning_for_stations_are_refused(
+    flyby: Flyby, station: Path, words: tuple[str, ...]
+) -> None:
+    made = flyby(words[0], station, *words[1:])
+    assert made.exit_code == 2 and f"{words[1]} does not go with a station" in made.stderr
+
+
 def test_a_file_that_two_robots_drive_does_not_change_in_place(flyby: Flyby, station: Path) -> None:
     rests = "[9E9,9E9,9E9,9E9,9E9,9E9]"
     turns = [

@@ -72,7 +72,7 @@ function choice(session) {
           "button",
           { onclick: () => session.choose(track.index), "aria-pressed": String(track === session.track) },
           `${track.name} `,
-          h("small", {}, `${track.duration.toFixed(3)} s`),
+          h("small", {}, `${(track.data.takes ?? track.duration).toFixed(3)} s`),
         ),
       ),
     );

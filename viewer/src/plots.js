@@ -81,13 +81,14 @@ export class PlotPane {
   /** Curves of a chart: the active track's, and of its ghosts those of the whole arm. */
   curves(chart) {
     const found = [];
-    for (const track of this.session.shown()) {
+    const shown = this.session.shown();
+    for (const track of shown) {
       const own = track === this.session.track;
       const channels = track.channels.filter((channel) => channel.chart === chart.key);
       channels.forEach((channel, k) => {
         const joint = channel.axis ?? null;
         if (!own && (channel.stepped || joint !== null || chart.key === "between")) return; // of two robots once
-        found.push({ track, channel, own, name: own ? channel.name : `${channel.name}, ${track.name}`, colour: colourOf(channel, joint, k, own) });
+        found.push({ track, channel, own, name: own ? channel.name : `${channel.name}, ${track.name}`, colour: colourOf(channel, joint, own ? k : shown.indexOf(track)) });
       });
     }
     for (const curve of found) curve.dashed = !curve.own && found.some((one) => one.own);
@@ -390,10 +391,10 @@ function highest(curves) {
   return curves.reduce((most, { channel }) => channel.values.reduce((top, v) => (v > top ? v : top), most), 0);
 }
 
-function colourOf(channel, joint, k, own) {
+function colourOf(channel, joint, k) {
   if (channel.stepped) return "#8a8f94";
   if (joint !== null) return NAMED[joint % NAMED.length];
-  return own ? NAMED[k % NAMED.length] : "#2f6fb3";
+  return NAMED[k % NAMED.length];
 }
 
 function ranged(low, high, limit) {

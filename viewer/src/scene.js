@@ -116,7 +116,11 @@ export class SceneView {
     this.veils = new Veils();
     this.coat = session.page.coat ? new CoatView(session.page.coat) : null;
     this.lights();
-    new ResizeObserver(() => this.resize()).observe(host);
+    // What is sized is blank until it is drawn, and the next frame is late for that.
+    new ResizeObserver(() => {
+      this.resize();
+      this.render();
+    }).observe(host);
     this.rebuild();
     this.resize();
     this.look("oblique");

@@ -1,6 +1,6 @@
 // Tables below the source: sorted by a click on a heading, filtered by text.
 
-import { h } from "./dom.js";
+import { h, number } from "./dom.js";
 
 const MOST_ROWS = 3000;
 const UNBROKEN = 30; // characters of a cell that stays in one line; longer ones are prose
@@ -144,7 +144,7 @@ export class TablePane {
       if (!filled[k]) return null;
       const column = table.columns[k];
       if (typeof cell === "number") {
-        const td = h("td", { class: "right" }, cell.toFixed(column.digits ?? 0));
+        const td = h("td", { class: "right" }, number(cell, column.digits ?? 0));
         if (column.bar) {
           const share = (100 * Math.max(cell, 0)) / most[k];
           td.classList.add("barred");

@@ -234,6 +234,26 @@ def test_a_station_runs_on_one_clock(opened: Opened) -> None:
     assert view.locator(".line.now").first.get_attribute("data-line") == str(spell.action.span.line)
 
 
+def test_a_station_with_better_programs(opened: Opened) -> None:
+    """Robots as they drive now; what changed in each, and how they drove before, on one clock."""
+    made = flyby.station_zones(ROOT / "examples/two_robots/station.toml")
+    view = opened(page_bytes(made))
+    top = view.locator(".top").inner_text()
+    assert f"{made.before.duration:.3f} → {made.after.duration:.3f} s" in top
+    rows = view.evaluate("flyby.plots.gantt.rows.map((row) => row.name)")
+    assert {"left", "right", "left, before", "right, before"} <= set(rows)
+    whole = made.before.duration
+    assert view.evaluate("flyby.session.duration") == pytest.approx(whole, abs=2e-3)
+    assert f"{made.after.duration:.3f} s" in view.locator(".choice").inner_text()
+    view.locator(".choice").get_by_role("button", name="left").click()
+    view.locator(".tabs").get_by_text("Changes").click()
+    changed = [one for one in made.solutions["left"].zones if one.before != one.after]
+    assert view.locator("tbody tr").count() == len(changed) > 0
+    view.locator("tbody tr").first.click()
+    line = view.locator(".line.picked").inner_text()
+    assert "Move" in line and "z" in line
+
+
 def test_no_column_of_the_causes_is_cut(opened: Opened) -> None:
     program = flyby.read(ROOT / "examples/pick.script", cell=ROOT / "examples/cell/pick.toml")
     view = opened(page_bytes(flyby.emulate(program)))
@@ -299,6 +319,15 @@ def test_a_log_beside_its_emulation(opened: Opened, folder: Path) -> None:
     assert view.evaluate("flyby.plots.slots.map((slot) => slot.curves.length)")[0] == 1
     view.locator(".choice").get_by_role("button", name="measured").click()
     assert view.evaluate("flyby.session.track.name") == "measured"
+    # The buttons say the times that the page says above, and both speeds are in one plot.
+    aligned = found.prediction.alignment
+    for name, time in (("emulated", aligned.moving), ("measured", aligned.logged_moving)):
+        assert view.locator(".choice").get_by_role("button", name=f"{name} {time:.3f} s").count()
+        assert f"{time:.3f} s" in view.locator(".facts").inner_text()
+    names = view.evaluate("flyby.plots.slots[1].curves.map((curve) => curve.name)")
+    assert "TCP" in names and "driven, emulated" in names
+    values = view.evaluate("Array.from(flyby.session.track.channel('speed').values)")
+    assert max(values) == pytest.approx(1000.0 / 1.03, rel=0.01)
 
 
 def test_points_of_a_front_are_picked(opened: Opened) -> None:
