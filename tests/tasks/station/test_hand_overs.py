@@ -23,6 +23,7 @@ from flyby.core.errors import InputError
 from flyby.core.handling.arrangement import PlacedPart
 from flyby.core.handling.handling import Handling
 from flyby.core.station.actions import actions_of
+from flyby.core.station.clearances import StationProver
 from flyby.core.station.clock import Schedule, StationClock
 from flyby.core.station.hand_over import check_hand_overs
 from flyby.core.station.station import StationRobot
@@ -109,6 +110,22 @@ def test_who_has_put_a_part_down_keeps_off_it(tmp_path: Path) -> None:
         made = flyby.station(file)
         assert made.clear == clear
         assert causes(made) == (set() if clear else {ConflictCause.NEAR})
+
+
+def test_for_third_robots_it_is_the_takers_once_that_has_it(tmp_path: Path) -> None:
+    file = hand_over(tmp_path)
+    (tmp_path / "third.script").write_text("def third():\n  movej([0, -1.6, 1.6, 0, 0, 0])\nend\n")
+    (tmp_path / "third.toml").write_text('robot = "ur/ur10e"\nbase = { xyz_mm = [0, 9000, 0] }\n')
+    third = '[robot.third]\nprogram = "third.script"\ncell = "third.toml"\n[[hand_over]]'
+    file.write_text(file.read_text("utf-8").replace("[[hand_over]]", third), "utf-8")
+    made = flyby.station(file)
+    assert made.clear
+    prover = StationProver(made.station, made.actions).prover("right", "third")
+    rows, pairs = np.arange(len(prover.one.moves)), np.arange(len(prover.pairs))
+    items = np.stack(np.meshgrid(rows, [0], pairs, indexing="ij"), -1).reshape(-1, 3)
+    of_bar = np.array(["bar" in prover.names(pair) for pair in pairs])[items[:, 2]]
+    before = prover.one.moves[items[:, 0]] <= 3
+    np.testing.assert_array_equal(prover.skipped(items), of_bar & before)
 
 
 def test_what_two_cells_say_of_one_part_must_agree(tmp_path: Path) -> None:
