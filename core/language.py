@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 if TYPE_CHECKING:
     from .backup.backup import Backup
     from .program.program import Program
+    from .program.question import Answer
     from .recording import Recording
     from .robot.model import Robot
     from .source.reading import Files, ReadOptions
+    from .spatial.pose import Pose
 
 Sources = Mapping[str, str]
 """Texts of a program's source files by file name."""
@@ -103,6 +105,23 @@ class Recorder(Protocol):
 
     def steps(self, recording: Recording, period: float) -> Sequence[str]:
         """What is done at the controller, a sentence or two each, in their order."""
+        ...
+
+
+@runtime_checkable
+class FrameAnswers(Protocol):
+    """Says poses as users answer frames and tools."""
+
+    def frame_answer(self, example: Answer, pose: Pose) -> Answer | None:
+        """An answer that says a pose.
+
+        Args:
+            example: of the question, of which all but the pose stays.
+            pose: of a frame, or the TCP of a tool.
+
+        Returns:
+            None where the example is no frame and no tool.
+        """
         ...
 
 

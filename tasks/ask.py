@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .guess import read_or_guess
 from .options.keywords import by_keywords
 from .read import SourceOptions
+from .setup import setup_of_program, start_of
 
 if TYPE_CHECKING:
+    from ..core.program.program import Program
+    from ..core.program.question import Question
     from .results.questions import Questions
 
 
@@ -34,7 +38,31 @@ def ask_with(source: str | Path, options: SourceOptions) -> Questions:
     program = read_or_guess(source, options)
     reading = program.reading
     name = Path(reading.main).name if isinstance(reading, Reading) else program.name
-    return Questions.of(program.questions, name)
+    return Questions.of(_with_places(program), name)
+
+
+def _with_places(program: Program) -> tuple[Question, ...]:
+    """What a program asks; unknown tools and frames that keep it from being driven have examples
+    with which it can be."""
+    from ..core.driving.fitting_frames import frames_that_fit
+    from ..core.language import FrameAnswers
+    from ..core.motion.emulator.controller import Controller
+
+    setup = setup_of_program(program)
+    says = setup.vendor.reader
+    if not isinstance(says, FrameAnswers):
+        return program.questions
+    found = frames_that_fit(Controller(setup.vendor, setup.robot), program, start_of(program))
+    asked: list[Question] = []
+    for question in program.questions:
+        pose = found.get(question.key)
+        if pose is not None and question.table == "values" and question.example is not None:
+            example = says.frame_answer(question.example, pose)
+            if example is not None:
+                said = f"not known; with this example {setup.robot.name} drives more of its moves"
+                question = replace(question, example=example, meanwhile=said)
+        asked.append(question)
+    return tuple(asked)
 
 
 ask = by_keywords(ask_with, SourceOptions)

@@ -196,5 +196,5 @@ class _Drive:
         return (
             f"; {' and '.join(asked)} {be} not known, and may well be why: say what "
             f"{'it is' if be == 'is' else 'they are'} in a file ({spelt('answers')}; `flyby ask` "
-            "writes one)"
+            "writes one, and looks for what would do)"
         )

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ...core.language import Sources
     from ...core.program.program import Program
+    from ...core.program.question import Answer
     from ...core.recording import Recording
     from ...core.robot.model import Robot
     from ...core.source.reading import Files, ReadOptions
+    from ...core.spatial.pose import Pose
 
 _BEGINS = re.compile(r"^[ \t]*(?:&\w+|(?:GLOBAL[ \t]+)?DEF(?:DAT|FCT)?[ \t]+\w)", re.M | re.I)
 
@@ -42,6 +44,12 @@ class Krl:
     def recognises(self, text: str) -> bool:
         """See `flyby.core.language.Recogniser`."""
         return _BEGINS.search(text) is not None
+
+    def frame_answer(self, example: Answer, pose: Pose) -> Answer | None:
+        """See `flyby.core.language.FrameAnswers`."""
+        from .values.answers import frame_answer
+
+        return frame_answer(example, pose)
 
     def write(self, program: Program, robot: Robot, options: Mapping[str, str]) -> Sources:
         """See `flyby.core.language.Writer.write`."""

@@ -11,6 +11,7 @@ from ....core.errors import Span
 from ....core.program.question import Answer, QuestionKind
 from ....core.source.execution.answers import Fields
 from ....core.source.execution.course import About, AnswerError, Course
+from ....core.spatial.pose import Pose
 from ..syntax import tree
 from .elements import array_mismatch
 from .types import BOOL, NUM, STRING, Foreign, RecordType, Scalar, Type, Unknown, Value
@@ -71,6 +72,22 @@ def example_of(type_: Type | None, sizes: tuple[int, ...] = ()) -> Answer | None
     if any(part is None for part in parts):
         return None
     return tuple(part for part in parts if part is not None)
+
+
+_FRAME_AT = {3: 1, 5: 3}
+"""Where the frame stands in a record of so many components: a tool's, a work object's."""
+
+
+def frame_answer(example: Answer, pose: Pose) -> Answer | None:
+    """A pose as a user answers a tool or a work object, mm; None where neither is asked."""
+    if not isinstance(example, tuple) or not isinstance(example[0], bool):
+        return None
+    at = _FRAME_AT.get(len(example))
+    if at is None:
+        return None
+    place = tuple(round(1000 * value, 3) + 0.0 for value in pose.position)
+    turned = tuple(round(value, 6) + 0.0 for value in pose.quaternion)
+    return (*example[:at], (place, turned), *example[at + 1 :])
 
 
 class TypedAnswers:

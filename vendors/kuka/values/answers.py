@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from ....core.program.question import Answer, QuestionKind
 from ....core.source.execution.answers import Fields
 from ....core.source.execution.course import About, Course
+from ....core.spatial.pose import Pose
 from ..syntax.tree import Name
+from .angles import angles
 from .data import Data
 from .expected import AXIS_NAMES, EXPECTED
 from .predefined import OUTPUTS
@@ -91,6 +93,15 @@ class DatumAnswers:
                 value = fields.get(step) if isinstance(step, str) else None
             return value
         return None
+
+
+def frame_answer(example: Answer, pose: Pose) -> Answer | None:
+    """A pose as a user answers a frame or a tool, mm and degrees; None where neither is asked."""
+    if not isinstance(example, Fields) or [name for name, _ in example] != list("XYZABC"):
+        return None
+    x, y, z = (1000 * value for value in pose.position)
+    turned = angles(pose.quaternion)
+    return Fields(zip("XYZABC", (round(v, 3) + 0.0 for v in (x, y, z, *turned)), strict=True))
 
 
 def answered(answer: Answer) -> Value:

@@ -2,8 +2,8 @@
 
 The controller speeds up to a speed, keeps it, and goes on with the program after the time ``t``;
 the next statement stops it, as ``stopl`` does. Driven is a move from rest to rest, which leads over
-speed times time where it slows down as it has sped up. A call that goes on with the same speed makes
-the move longer, as in loops that drive by steps; between two speeds the robot is taken to stop.
+speed times time where it slows down as it has sped up. A call that goes on with the same
+speed makes the move longer, as in loops that drive by steps; between two speeds the robot stops.
 """
 
 from __future__ import annotations
