@@ -22,7 +22,7 @@ from ..tasks.files.outputs import (
     picture_kind,
     write_all,
 )
-from ..tasks.guess import with_robot
+from ..tasks.options.guessed_robot import with_robot
 from ..tasks.pages.of_results import page_bytes
 from ..tasks.read import SourceOptions, read_with
 from .output.console import fail, print_json, print_rich, progress, warn, warn_of

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .guess import read_or_guess
+from .options.guessed_robot import read_or_guess
 from .options.keywords import by_keywords
 from .read import SourceOptions
 from .setup import setup_of_program, start_of

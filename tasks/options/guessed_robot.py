@@ -12,17 +12,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.door import spelt
-from ..core.errors import FlybyError, Note
-from .catalogue import registry
-from .fitting import said_to_fit
-from .read import SourceOptions, backup_in, read_undriven, read_with, surrounding
-from .setup import setup_of, start_of
+from ...core.door import spelt
+from ...core.errors import FlybyError, Note
+from ..catalogue import registry
+from ..fitting import said_to_fit
+from ..read import SourceOptions, backup_in, read_undriven, read_with, surrounding
+from ..setup import setup_of, start_of
 
 if TYPE_CHECKING:
-    from ..core.program.program import Program
-    from ..core.robot.arm_list import Listed
-    from ..core.vendor import Vendor
+    from ...core.program.program import Program
+    from ...core.robot.arm_list import Listed
+    from ...core.vendor import Vendor
 
 _TRIED = 5
 """Arms that are driven, over all sizes that can take the places."""
@@ -67,8 +67,8 @@ def read_or_guess(source: str | Path, options: SourceOptions) -> Program:
 
 def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] | None:
     """An arm, and why it is taken."""
-    from ..core.driving.fitting_arms import TakenPlaces
-    from ..core.registry import all_listed
+    from ...core.driving.fitting_arms import TakenPlaces
+    from ...core.registry import all_listed
 
     if isinstance(source, str) and ("\n" in source or not source):
         return None
@@ -115,8 +115,8 @@ def _first_that_drives(
 
 def _faults(source: str | Path, options: SourceOptions) -> int:
     """How many moves an arm cannot drive."""
-    from ..core.driving.past_faults import drive
-    from ..core.motion.emulator.controller import Controller
+    from ...core.driving.past_faults import drive
+    from ...core.motion.emulator.controller import Controller
 
     setup = setup_of(options)
     program = read_with(source, options)
@@ -131,8 +131,8 @@ def _mentioned(
     path: Path, program: Program | None, arms: list[Listed]
 ) -> Iterator[tuple[str, list[Listed]]]:
     """Arms that the program's files and folders name, and the words, the plainest first."""
-    from ..core.robot.model_names import matching
-    from ..core.source.reading import Reading
+    from ...core.robot.model_names import matching
+    from ...core.source.reading import Reading
 
     reading = None if program is None else program.reading
     texts = [file.text for file in reading.files.values()] if isinstance(reading, Reading) else []

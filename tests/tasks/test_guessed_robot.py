@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.errors import OptionError
-from flyby.tasks.guess import read_or_guess, with_robot
+from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
