@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from ...core.door import spelt
@@ -61,21 +61,39 @@ def task_of(backup: Backup, name: str | None, entry: str | None = None) -> Task:
                 return task
         raise UnknownNameError(f"task of {backup.source}", name, [t.name for t in backup.tasks])
     moving = [task for task in backup.tasks if task.robot is not None]
-    asked, _ = entry_call(None if entry == ALL else entry)
-    having = [task for task in moving if asked is not None and _has(task, asked)]
+    having = [task for task in moving if entry not in (None, ALL) and _entry(task, entry)]
     for found in (moving, having):
         if len(found) == 1:
             return found[0]
     if not moving:
         raise InputError(f"{backup.source}: no task of it moves a robot{_noted(backup)}")
     names = ", ".join(task.name for task in moving)
+    if entry not in (None, ALL) and not having:
+        every = tuple(point for task in moving for point in _entry_points(task))
+        raise OptionError(
+            f"{backup.source}: none of {names} has a routine {entry}. Choose with "
+            f"{spelt('entry')}: {listed(every)}"
+        )
     raise OptionError(
         f"{backup.source}: which task? Several move a robot: {names}; choose with {spelt('task')}"
     )
 
 
-def _has(task: Task, routine: str) -> bool:
-    return any(one.name.casefold() == routine.casefold() for one in task.entries)
+def _entry(task: Task, asked: str | None) -> BackupEntry | None:
+    """The routine of a task that is asked for: by its name, maybe with arguments, or by that of its
+    file, whose signs no routine's name may have.
+    """
+    if asked is None:
+        return None
+    for known in task.entries:
+        if PurePath(known.file).stem.casefold() == asked.casefold() and len(task.entries) == 1:
+            return known
+    try:
+        name, _ = entry_call(asked)
+    except OptionError:
+        return None
+    named = (one for one in task.entries if name and one.name.casefold() == name.casefold())
+    return next(named, None)
 
 
 def setup_in(backup: Backup, task: Task, options: RobotOptions) -> Setup:
@@ -165,6 +183,8 @@ def read_task(
         raise _which_routine(backup, task, entry)
     if entry is None:
         entry = task.entry if chosen is None else chosen.name
+    elif chosen is not None and PurePath(chosen.file).stem.casefold() == entry.casefold():
+        entry = chosen.name
     beside = [backup.root / name for name in task.files if name != file]
     vendor = registry().find_vendor(backup.vendor) if setup is None else setup.vendor
     robot = None if setup is None else setup.robot
@@ -189,16 +209,12 @@ def _which_routine(backup: Backup, task: Task, entry: str | None) -> InputError:
 
 def _chosen(backup: Backup, task: Task, entry: str | None) -> BackupEntry | None:
     """What the backup says of an entry, or of the only one where none is asked for."""
-    name, _ = entry_call(entry)
-    if name is None:
-        wanted = task.entry if task.main is not None else None
-        if wanted is None:
-            return task.entries[0] if task.main is None and len(task.entries) == 1 else None
-        name = wanted
-    for known in task.entries:
-        if known.name.casefold() == name.casefold():
-            return known
-    return None
+    if entry is not None:
+        return _entry(task, entry)
+    wanted = task.entry if task.main is not None else None
+    if wanted is None:
+        return task.entries[0] if task.main is None and len(task.entries) == 1 else None
+    return _entry(task, wanted)
 
 
 def _entry_points(task: Task) -> tuple[EntryPoint, ...]:

@@ -21,7 +21,13 @@ _FUNCTION = f"""  def {_TOWARDS}(feature, direction, distance):
     return pose_add(get_target_tcp_pose(), pose_sub(pose_trans(feature, shift), feature))
   end"""
 _BASE = "p[0, 0, 0, 0, 0, 0]"
-_DISTANCES = "distance", "untilDistance", "value"
+_DISTANCES = "distance", "Distance", "untilDistance", "value"
+_ALONG = {
+    f"{axis}{sign}": f"[{', '.join(way if k == own else '0' for k in range(3))}]"
+    for own, axis in enumerate("XYZ")
+    for sign, way in (("Plus", "1"), ("Minus", "-1"))
+}
+"""``selectedDirection`` by the axes of the feature: ``XPlus`` to ``ZMinus``."""
 
 
 def direction(out: Emission, node: Element, step: Element, speed: str) -> None:
@@ -33,7 +39,9 @@ def direction(out: Emission, node: Element, step: Element, speed: str) -> None:
         speed: arguments of the call.
     """
     with out.node("Direction"):
-        towards = out.expression(child(step, "expression", "direction", "directionExpression"))
+        towards = _ALONG.get(step.get("selectedDirection", "")) or out.expression(
+            child(step, "expression", "direction", "directionExpression")
+        )
         own = child(step, "feature")
         frame = feature_text(out, child(node, "feature") if own is None else own) or _BASE
         if not towards:
@@ -61,6 +69,8 @@ def _distance(out: Emission, step: Element) -> tuple[str | None, list[str]]:
         if not (isinstance(one.tag, str) and one.tag.endswith(("Until", "UntilNode"))):
             continue
         kind = one.get("type", "EXPRESSION")
+        if kind.upper() == "NONE":
+            continue
         if "DISTANCE" not in kind.upper():
             others.append(kind.lower().replace("_", " "))
             continue

@@ -105,6 +105,11 @@ def test_one_file_is_opened_alone_with_its_installation(build: Build, tmp_path: 
     with pytest.raises(OptionError, match="which task"):
         flyby.read(tmp_path)
     assert len(flyby.read(tmp_path, task="b").moves) == 2
+    # What is asked for is found by its file's name, too, which no routine may have.
+    build.packed(tmp_path / "Pick & Place 2.urp", build.program(move(build)))
+    assert len(flyby.read(tmp_path, entry="pick & place 2").moves) == 2
+    with pytest.raises(OptionError, match=r"none of .* has a routine Gone 1\. Choose with entry"):
+        flyby.read(tmp_path, entry="Gone 1")
 
 
 def test_an_archive_is_the_folder_in_it(build: Build, tmp_path: Path) -> None:

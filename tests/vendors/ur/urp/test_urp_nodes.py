@@ -138,6 +138,33 @@ def test_a_direction_is_driven_over_its_distance(build: Build, tmp_path: Path) -
     assert "until tool contact detection only the robot knows" in note
 
 
+@pytest.mark.parametrize(
+    ("selected", "way"), [("XPlus", (1, 0, 0)), ("YMinus", (0, -1, 0)), ("ZPlus", (0, 0, 1))]
+)
+def test_a_direction_along_an_axis(
+    build: Build, tmp_path: Path, selected: str, way: tuple[int, int, int]
+) -> None:
+    """As PolyScope 5 stores what is picked from its list, and the distance."""
+    tag = "gui.program.direction.MoveDirectionNode"
+
+    def along(until: str) -> str:
+        return f'<{tag} selectedDirection="{selected}"><children>{until}</children></{tag}>'
+
+    until = (
+        '<Until type="DISTANCE" allowActions="false" deceleration="3.0" distanceNodeType="STOP">'
+        '<Distance>0.03</Distance><motionParameters blendRadius="0.0"/></Until>'
+    )
+    program = opened(build, tmp_path, build.move(build.fixed("A", A), along(until), kind="MoveL"))
+    first, second = (
+        m.target.pose.position for m in program.moves if isinstance(m.target, PoseTarget)
+    )
+    moved = [z - x for z, x in zip(second, first, strict=True)]
+    assert moved == pytest.approx([0.03 * share for share in way], abs=1e-12)
+    open_end = along('<Until type="NONE" allowActions="false"/>')
+    (note,) = told(build, build.move(build.fixed("A", A), open_end, kind="MoveL"))
+    assert "until it is stopped only the robot knows" in note
+
+
 def test_loops(build: Build, tmp_path: Path) -> None:
     def loop(kind: str, inside: str = "") -> str:
         return build.node(
