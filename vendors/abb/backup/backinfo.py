@@ -20,6 +20,8 @@ _MODULE = re.compile(
 )
 _VERSION = re.compile(r"\s*(RobotWare|RobotControl|BaseWare)\s+(?:OS\s+)?Version\s*:\s*(\S+)", re.I)
 _ARM = re.compile(r"\b(?:IRB|CRB)\s?\d{2,5}[^,;<\"]*")
+_TYPE = re.compile(r"\d{2,5}[A-Z]*-\d[\d.]*/\d[\d.]*")
+"""``2600ID-8/2.00``: the type alone, as lists of RobotWare 5 have it behind the series."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +99,14 @@ def parse_backinfo(text: str) -> BackInfo:
 
 def arms_in(lines: list[str]) -> tuple[str, ...]:
     """Names of arms among products: ``IRB 4600-40/2.55``."""
-    names = (found[0].strip() for line in lines for found in _ARM.finditer(line))
+    names: list[str] = []
+    for line in lines:
+        if _TYPE.fullmatch(line.strip()):
+            name = f"IRB {line.strip()}"
+            if name not in names and names and name.startswith(names[-1]):
+                names.pop()  # the series of this type
+            names.append(name)
+        names += [found[0].strip() for found in _ARM.finditer(line)]
     return tuple(dict.fromkeys(names))
 
 

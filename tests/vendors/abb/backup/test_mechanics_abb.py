@@ -371,3 +371,14 @@ def test_an_arm_that_is_not_driven_says_why(kind: str, why: str) -> None:
     (found,) = made(one_robot(kind=kind)).robots
     assert found.robot is None
     assert any(why in lack for lack in found.lacks)
+
+
+def test_types_of_old_lists_stand_without_their_series() -> None:
+    """RobotWare 5 lists the series, and the type alone below it and in a section of its own."""
+    info = parse_backinfo(
+        ">>PRODUCTS_ID:\nRobotWare Version: 5.15.5001.05\n\n  ABB standard manipulator\n"
+        "  IRB 2600\n  2600ID-8/2.00\n  No motor fan\n\n>>ROBOT_TYPE:\n2600ID-8/2.00\n"
+    )
+    assert info.arms == ("IRB 2600ID-8/2.00",)
+    two = parse_backinfo(">>ROBOT_TYPE:\n1600-5/1.2\n4400-60/1.96\n")
+    assert two.arms == ("IRB 1600-5/1.2", "IRB 4400-60/1.96")
