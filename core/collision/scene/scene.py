@@ -291,7 +291,7 @@ class CollisionScene:
             if found.distance[m, k] < within:
                 within = float(found.distance[m, k])
                 least = within, start + int(m), int(pairs[k])
-            places = _places(R, p)
+            places = _Places(R, p)
             left = np.argwhere(bound < within)
             for m, k in left[np.argsort(bound[tuple(left.T)])].tolist():
                 if not bound[m, k] < within:
@@ -412,7 +412,7 @@ class CollisionScene:
         # Infinite bounds are of pairs that closed forms have told.
         left = np.isfinite(bound)
         found.distance[left] = np.clip(bound[left], costly, within)
-        places = _places(R, p)
+        places = _Places(R, p)
         for m, k in np.argwhere(bound < costly).tolist():
             witness = self._distances.distance(*self._pairs[k], places[m], costly)
             if witness is not None:
@@ -424,7 +424,7 @@ class CollisionScene:
         R, p = self._place(q)
         found, bound = self._closed_forms(R, p, self.pairs, within)
         least = np.asarray(found.distance.min(axis=1, initial=within))
-        places = _places(R, p)
+        places = _Places(R, p)
         samples, pairs = np.nonzero(bound < least[:, None])
         order = np.lexsort((bound[samples, pairs], samples))
         for m, k in zip(samples[order].tolist(), pairs[order].tolist(), strict=True):
@@ -439,7 +439,7 @@ class CollisionScene:
         R, p = self._place(q)
         found, bound = self._closed_forms(R, p, self.pairs, TOUCH)
         hit = np.asarray((found.distance < TOUCH).any(axis=1))
-        places = _places(R, p)
+        places = _Places(R, p)
         for m, k in np.argwhere((bound < TOUCH) & ~hit[:, None]).tolist():
             hit[m] = hit[m] or self._contacts.touch(*self._pairs[k], places[m])
         return hit
@@ -449,15 +449,26 @@ class CollisionScene:
         R, p = self._place(q)
         found, bound = self._closed_forms(R, p, pairs, TOUCH)
         touching = found.distance < TOUCH
-        places = _places(R, p)
+        places = _Places(R, p)
         for m, k in np.argwhere(bound < TOUCH).tolist():
             a, b = pairs[k].tolist()
             touching[m, k] = self._contacts.touch(a, b, places[m])
         return touching
 
 
-def _places(R: FloatArray, p: FloatArray) -> list[BodyPoses]:
-    return [BodyPoses(*place) for place in zip(R, p, strict=True)]
+class _Places(dict[int, BodyPoses]):
+    """The places of the bodies in each configuration, made where they are asked for.
+
+    One object a configuration: engines keep what they make of it.
+    """
+
+    def __init__(self, R: FloatArray, p: FloatArray) -> None:
+        super().__init__()
+        self._R, self._p = R, p
+
+    def __missing__(self, m: int) -> BodyPoses:
+        made = self[m] = BodyPoses(self._R[m], self._p[m])
+        return made
 
 
 def _chunks(rows: FloatArray) -> Iterator[FloatArray]:

@@ -83,6 +83,7 @@ class Controller:
         self.model = vendor.motion_of(robot) if model is None else model
         self.sampling = _sampling(self.model) if sampling is None else sampling
         arcs = None if vendor.speaks is None else vendor.speaks.arcs
+        self._last_limits: SegmentLimits | None = None
         turns = self.model.line_turn, self.model.arc_turn
         self._routes = RouteFinder(robot, vendor.label, *turns, arcs, vendor.nearest)
 
@@ -226,13 +227,21 @@ class Controller:
         Raises:
             MotionError: the limits do not let it move.
         """
-        speeds = [move.speed for move in self._moves(program, path)]
-        limits = SegmentLimits.of(self.robot, self.model, speeds, path.segments)
         try:
+            limits = self._limits(program, path)
             along = along_path(path, self.robot.limits.acceleration)
             return self.stamp_within(program, path, along, limits, self._shares(along))
         except MotionError as error:
             raise _located(error, program) from error
+
+    def _limits(self, program: Program, path: Path) -> SegmentLimits:
+        """The limits of a path's segments; those of the last path where they are the same."""
+        speeds = [move.speed for move in self._moves(program, path)]
+        segments, known = path.segments, self._last_limits
+        if known is not None and known.hold(speeds, segments):
+            return known
+        self._last_limits = SegmentLimits.of(self.robot, self.model, speeds, segments)
+        return self._last_limits
 
     def stamp_within(
         self,

@@ -37,6 +37,12 @@ def check_path(robot: Robot, program: Program, path: Path, started: bool) -> Non
     Raises:
         MotionError: it passes one; the move is named.
     """
+    limits, ends = robot.limits, path.route.ends.q[0, 0]
+    lowest, highest = limits.lower - _SLACK, limits.upper + _SLACK
+    if not robot.coupled_ranges and all(
+        ((lowest <= q) & (q <= highest)).all() for q in (ends, path.q)
+    ):
+        return
     remedy = "start within the limits" if started else OTHER_TARGET
     check_standing(robot, path.route.ends.q[0, 0], remedy, "the start: ")
     beyond = _beyond(robot, path.q)

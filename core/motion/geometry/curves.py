@@ -60,7 +60,7 @@ class Curves(NamedTuple):
 
     def zeros_like(self) -> Curves:
         """A gradient to add to."""
-        return Curves(self.kind, *(np.zeros_like(a) for a in self[1:]))
+        return Curves(self.kind, *(np.zeros(a.shape) for a in self[1:]))
 
 
 class TcpCurves(NamedTuple):
@@ -77,6 +77,15 @@ class TcpCurves(NamedTuple):
     turning: Curves
     reference: FloatArray
     prescribed: Curves
+
+    def zeros_like(self) -> TcpCurves:
+        """A gradient to add to."""
+        return TcpCurves(
+            self.position.zeros_like(),
+            self.turning.zeros_like(),
+            np.zeros_like(self.reference),
+            self.prescribed.zeros_like(),
+        )
 
 
 class CurveTangents(NamedTuple):

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import FloatArray
+from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ..model.blend import HERMITE, Blend, BlendGradient
 from .corners import JOINT_CORNER, POSITION, Corners
 from .curves import POLYNOMIAL, Curves
@@ -20,8 +21,6 @@ from .layout import (
     LayoutGradient,
     blend_windows,
     pull_blend_windows,
-    pull_segment_windows,
-    segment_windows,
 )
 from .segments import JOINT_SEGMENT, EndsGradient, SegmentsGradient
 
@@ -45,19 +44,37 @@ class CornerEdges:
     def of_joint_legs(cls, layout: Layout) -> CornerEdges:
         """Edges on the joint lines; those on other legs are zero."""
         ends, s = layout.segments.ends, layout.segments
-        reach = layout.corners.reach[:, POSITION]
-        rate = s.delta_q / np.where(s.scale > 0, s.scale, 1.0)[:, None]
-        joint = (ends.kind == JOINT_SEGMENT)[:, None]
-        entry = ends.q[:-1, 1] - reach[:, :1] * s.delta_q[:-1]
-        leave = ends.q[1:, 0] + reach[:, 1:] * s.delta_q[1:]
-        q = np.stack([np.where(joint[:-1], entry, 0.0), np.where(joint[1:], leave, 0.0)], 1)
-        dq = np.stack([np.where(joint[:-1], rate[:-1], 0.0), np.where(joint[1:], rate[1:], 0.0)], 1)
-        return cls(q, dq, np.zeros_like(q))
+        shape = len(s.scale) - 1, 2, s.delta_q.shape[1]
+        edges = cls(np.zeros(shape), np.zeros(shape), np.zeros(shape))
+        reach = layout.corners.reach
+        _enter_joint_legs(ends.kind, ends.q, s.delta_q, s.scale, reach, edges.q, edges.dq)
+        return edges
 
     @classmethod
     def zeros_like(cls, edges: CornerEdges) -> CornerEdges:
         """A gradient to add to."""
-        return cls(*(np.zeros_like(edges.q) for _ in range(3)))
+        return cls(*np.zeros((3, *edges.q.shape)))
+
+
+@lean
+def _enter_joint_legs(
+    kind: IntArray,
+    ends: FloatArray,
+    delta_q: FloatArray,
+    scale: FloatArray,
+    reach: FloatArray,
+    q: FloatArray,
+    dq: FloatArray,
+) -> None:
+    for i in range(q.shape[0]):
+        for side in range(2):
+            k = i + side
+            if kind[k] != JOINT_SEGMENT:
+                continue
+            along = reach[i, POSITION, side] * (1.0 if side else -1.0)
+            for j in range(q.shape[2]):
+                q[i, side, j] = ends[k, 1 - side, j] + along * delta_q[k, j]
+                dq[i, side, j] = delta_q[k, j] / scale[k] if scale[k] > 0.0 else delta_q[k, j]
 
 
 def pull_joint_legs(
@@ -68,17 +85,47 @@ def pull_joint_legs(
     ends_bar: EndsGradient,
 ) -> None:
     """Reverse of `CornerEdges.of_joint_legs`."""
-    s = layout.segments
-    reach = layout.corners.reach[:, POSITION]
-    for side, which, near, sign in ((0, slice(None, -1), 1, -1.0), (1, slice(1, None), 0, 1.0)):
-        live = (layout.corners.kind == JOINT_CORNER) & (s.ends.kind[which] == JOINT_SEGMENT)
-        q_bar = np.where(live[:, None], bar.q[:, side], 0.0)
-        dq_bar = np.where(live[:, None], bar.dq[:, side], 0.0)
-        step, scale = s.delta_q[which], np.where(s.scale[which] > 0, s.scale[which], 1.0)[:, None]
-        ends_bar.q[which, near] += q_bar
-        reach_bar[:, POSITION, side] += sign * np.sum(q_bar * step, 1)
-        segments_bar.delta_q[which] += sign * reach[:, side : side + 1] * q_bar + dq_bar / scale
-        segments_bar.scale[which] -= np.sum(dq_bar * step, 1) / scale[:, 0] ** 2
+    s, corners = layout.segments, layout.corners
+    _pull_joint_legs(
+        (corners.kind, s.ends.kind),
+        s.delta_q,
+        s.scale,
+        corners.reach,
+        (bar.q, bar.dq),
+        ends_bar.q,
+        segments_bar.delta_q,
+        segments_bar.scale,
+        reach_bar,
+    )
+
+
+@lean
+def _pull_joint_legs(
+    kinds: tuple[IntArray, IntArray],
+    delta_q: FloatArray,
+    scale: FloatArray,
+    reach: FloatArray,
+    bar: tuple[FloatArray, FloatArray],
+    ends_bar: FloatArray,
+    delta_bar: FloatArray,
+    scale_bar: FloatArray,
+    reach_bar: FloatArray,
+) -> None:
+    for i in range(reach.shape[0]):
+        for side in range(2):
+            k, sign = i + side, 1.0 if side else -1.0
+            if kinds[0][i] != JOINT_CORNER or kinds[1][k] != JOINT_SEGMENT:
+                continue
+            length = scale[k] if scale[k] > 0.0 else 1.0
+            by_reach = by_scale = 0.0
+            for j in range(delta_q.shape[1]):
+                q_bar, dq_bar = bar[0][i, side, j], bar[1][i, side, j]
+                ends_bar[k, 1 - side, j] += q_bar
+                by_reach += q_bar * delta_q[k, j]
+                by_scale += dq_bar * delta_q[k, j]
+                delta_bar[k, j] += sign * reach[i, POSITION, side] * q_bar + dq_bar / length
+            reach_bar[i, POSITION, side] += sign * by_reach
+            scale_bar[k] -= by_scale / length**2
 
 
 def quintics(corners: Corners) -> FloatArray:
@@ -101,29 +148,63 @@ def make_joint_curves(layout: Layout, blend: Blend, edges: CornerEdges) -> Curve
     count = len(s.scale)
     basis = HERMITE if blend.kind == "quintic" else blend.coefficients
     curves = Curves.empty(2 * count - 1, s.delta_q.shape[1], basis)
-    joint = (s.ends.kind == JOINT_SEGMENT)[:, None]
-    curves.control[:count, 0] = np.where(joint, s.ends.q[:, 0], 0.0)
-    curves.control[:count, 1] = s.delta_q
-    curves.kind[count:] = POLYNOMIAL
-    before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
-    entry, leave = before * edges.dq[:, 0], after * edges.dq[:, 1]
-    curves.control[count:, 0] = edges.q[:, 0]
-    curves.window[:count] = segment_windows(layout)
+    slopes = blend.entry_slope, blend.exit_slope
+    _write(
+        s.ends.kind,
+        s.ends.q,
+        s.delta_q,
+        (s.scale, layout.waypoint, layout.extent),
+        (edges.q, edges.dq, edges.ddq),
+        slopes,
+        blend.meets_curvature,
+        curves,
+    )
     if blend.kind == "quintic":
+        before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
         shape = quintics(layout.corners)
+        entry, leave = before * edges.dq[:, 0], after * edges.dq[:, 1]
         legs = np.stack([entry, leave, edges.q[:, 1] - edges.q[:, 0]], 1)
         curves.control[count:, 1:] = shape @ legs
-        slopes = np.ascontiguousarray(shape[:, [0, 1], [0, 1]])
-        curves.window[count:] = blend_windows(layout, POSITION, slopes)
-        return curves
-    curves.control[count:, 1] = entry
-    curves.control[count:, 2] = leave
-    curves.control[count:, 3] = edges.q[:, 1] - edges.q[:, 0] - entry - leave
-    if blend.meets_curvature:
-        curves.control[count:, 4] = before**2 * edges.ddq[:, 0]
-        curves.control[count:, 5] = after**2 * edges.ddq[:, 1]
-    curves.window[count:] = blend_windows(layout, POSITION, blend.slopes(count - 1))
+        own = np.ascontiguousarray(shape[:, [0, 1], [0, 1]])
+        curves.window[count:] = blend_windows(layout, POSITION, own)
     return curves
+
+
+@lean
+def _write(
+    kind: IntArray,
+    ends: FloatArray,
+    delta_q: FloatArray,
+    along: tuple[FloatArray, FloatArray, FloatArray],
+    edges: tuple[FloatArray, FloatArray, FloatArray],
+    slopes: tuple[float, float],
+    meets_curvature: bool,
+    curves: Curves,
+) -> None:
+    """Write the curves of joint moves and of polynomial blends between them."""
+    scale, waypoint, extent = along
+    q, dq, ddq = edges
+    count, window, control = kind.size, curves.window, curves.control
+    for k in range(count):
+        window[k, 0], window[k, 1] = waypoint[k], scale[k]
+        for j in range(delta_q.shape[1]):
+            control[k, 0, j] = ends[k, 0, j] if kind[k] == JOINT_SEGMENT else 0.0
+            control[k, 1, j] = delta_q[k, j]
+    for i in range(count - 1):
+        k, before, after = count + i, extent[i, POSITION, 0], extent[i, POSITION, 1]
+        curves.kind[k] = POLYNOMIAL
+        window[k, 0] = waypoint[i + 1] - before
+        if before > 0.0 and after > 0.0:
+            window[k, 1] = before + after
+            window[k, 2] = slopes[0] * before / (before + after)
+            window[k, 3] = slopes[1] * after / (before + after)
+        for j in range(delta_q.shape[1]):
+            entry, leave = before * dq[i, 0, j], after * dq[i, 1, j]
+            control[k, 0, j], control[k, 1, j], control[k, 2, j] = q[i, 0, j], entry, leave
+            control[k, 3, j] = q[i, 1, j] - q[i, 0, j] - entry - leave
+            if meets_curvature:
+                control[k, 4, j] = before**2 * ddq[i, 0, j]
+                control[k, 5, j] = after**2 * ddq[i, 1, j]
 
 
 def pull_joint_curves(
@@ -141,37 +222,88 @@ def pull_joint_curves(
     the rates and bends of blends in time."""
     s = layout.segments
     count = len(s.scale)
-    dead = layout.corners.kind != JOINT_CORNER
-    bar.control[count:][dead] = 0.0
-    bar.window[count:][dead] = 0.0
-    tcp = s.ends.kind != JOINT_SEGMENT
-    bar.control[:count][tcp] = 0.0
-    bar.window[:count][tcp] = 0.0
-    ends_bar.q[:, 0] += bar.control[:count, 0]
-    segments_bar.delta_q += bar.control[:count, 1]
-    pull_segment_windows(bar.window[:count], layout_bar, segments_bar)
+    segments = s.scale, segments_bar.scale, segments_bar.delta_q, ends_bar.q
+    _pull_joint_moves(layout.corners.kind, s.ends.kind, bar, layout_bar.waypoint, segments)
     if blend.kind == "quintic":
         return _pull_quintics(layout, edges, bar, layout_bar, timed_bar)
-    slopes = blend.slopes(count - 1)
-    slopes_bar = pull_blend_windows(layout, POSITION, slopes, bar.window[count:], layout_bar)
-    blend_bar.slopes += slopes_bar.sum(0)
     blend_bar.coefficients += bar.coefficients
     out = CornerEdges.zeros_like(edges)
-    close = bar.control[count:, 3]
-    before, after = layout.extent[:, POSITION, :1], layout.extent[:, POSITION, 1:]
-    out.q[:, 0] += bar.control[count:, 0] - close
-    out.q[:, 1] += close
-    for side, extent, first, second in ((0, before, 1, 4), (1, after, 2, 5)):
-        rate_bar = bar.control[count:, first] - close
-        out.dq[:, side] += extent * rate_bar
-        layout_bar.extent[:, POSITION, side] += np.sum(rate_bar * edges.dq[:, side], 1)
-        if blend.meets_curvature:
-            bend_bar = bar.control[count:, second]
-            out.ddq[:, side] += extent**2 * bend_bar
-            layout_bar.extent[:, POSITION, side] += np.sum(
-                2 * extent * bend_bar * edges.ddq[:, side], 1
-            )
+    _pull_blends(
+        layout.extent,
+        (edges.dq, edges.ddq),
+        (blend.entry_slope, blend.exit_slope),
+        blend.meets_curvature,
+        bar.window[count:],
+        bar.control[count:],
+        (layout_bar.waypoint, layout_bar.extent, blend_bar.slopes),
+        (out.q, out.dq, out.ddq),
+    )
     return out
+
+
+@lean
+def _pull_joint_moves(
+    corners: IntArray,
+    kind: IntArray,
+    bar: Curves,
+    waypoint_bar: FloatArray,
+    segments: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+) -> None:
+    """Reverse of the joint moves' curves; clears the gradients of curves that are none's."""
+    _, scale_bar, delta_bar, ends_bar = segments
+    count, window, control = kind.size, bar.window, bar.control
+    for k in range(2 * count - 1):
+        live = kind[k] == JOINT_SEGMENT if k < count else corners[k - count] == JOINT_CORNER
+        if not live:
+            window[k] = 0.0
+            control[k] = 0.0
+            continue
+        if k < count:
+            waypoint_bar[k] += window[k, 0]
+            scale_bar[k] += window[k, 1]
+            for j in range(delta_bar.shape[1]):
+                ends_bar[k, 0, j] += control[k, 0, j]
+                delta_bar[k, j] += control[k, 1, j]
+
+
+@lean
+def _pull_blends(
+    extent: FloatArray,
+    edges: tuple[FloatArray, FloatArray],
+    slopes: tuple[float, float],
+    meets_curvature: bool,
+    window_bar: FloatArray,
+    control_bar: FloatArray,
+    layout_bar: tuple[FloatArray, FloatArray, FloatArray],
+    out: tuple[FloatArray, FloatArray, FloatArray],
+) -> None:
+    """Reverse of polynomial blends; ``layout_bar``: of waypoints, extents and the law's slopes."""
+    dq, ddq = edges
+    waypoint_bar, extent_bar, slopes_bar = layout_bar
+    for i in range(extent.shape[0]):
+        a, b = extent[i, POSITION, 0], extent[i, POSITION, 1]
+        if a > 0.0 and b > 0.0:
+            start, length = window_bar[i, 0], window_bar[i, 1]
+            entry, leave = window_bar[i, 2], window_bar[i, 3]
+            waypoint_bar[i + 1] += start
+            turned = (slopes[0] * entry - slopes[1] * leave) / (a + b) ** 2
+            extent_bar[i, POSITION, 0] += -start + length + turned * b
+            extent_bar[i, POSITION, 1] += length - turned * a
+            slopes_bar[0] += entry * a / (a + b)
+            slopes_bar[1] += leave * b / (a + b)
+        for j in range(dq.shape[2]):
+            close = control_bar[i, 3, j]
+            out[0][i, 0, j] += control_bar[i, 0, j] - close
+            out[0][i, 1, j] += close
+            for side in range(2):
+                far = extent[i, POSITION, side]
+                rate_bar = control_bar[i, 1 + side, j] - close
+                out[1][i, side, j] += far * rate_bar
+                extent_bar[i, POSITION, side] += rate_bar * dq[i, side, j]
+                if meets_curvature:
+                    bend_bar = control_bar[i, 4 + side, j]
+                    out[2][i, side, j] += far**2 * bend_bar
+                    extent_bar[i, POSITION, side] += 2 * far * bend_bar * ddq[i, side, j]
 
 
 def _pull_quintics(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from .corners import JOINT_CORNER, STOP, TCP_CORNER, Corners
 from .segments import Segments, SegmentsGradient
 
@@ -35,11 +36,27 @@ class Layout:
     @classmethod
     def of(cls, segments: Segments, corners: Corners) -> Layout:
         """The layout of these segments and corners."""
-        waypoint = np.concatenate([[0.0], np.cumsum(segments.scale)])
-        scales = np.stack([segments.scale[:-1], segments.scale[1:]], -1)
-        extent = corners.reach * scales[:, None, :]
-        extent[corners.kind == STOP] = 0.0
+        waypoint, extent = np.zeros(len(segments.scale) + 1), np.zeros(corners.reach.shape)
+        _lay_out(segments.scale, corners.kind, corners.reach, waypoint, extent)
         return cls(segments, corners, waypoint, extent)
+
+
+@lean
+def _lay_out(
+    scale: FloatArray,
+    kind: IntArray,
+    reach: FloatArray,
+    waypoint: FloatArray,
+    extent: FloatArray,
+) -> None:
+    for k in range(scale.size):
+        waypoint[k + 1] = waypoint[k] + scale[k]
+    for i in range(kind.size):
+        if kind[i] == STOP:
+            continue
+        for channel in range(3):
+            for side in range(2):
+                extent[i, channel, side] = reach[i, channel, side] * scale[i + side]
 
 
 @dataclass
@@ -52,18 +69,36 @@ class LayoutGradient:
     @classmethod
     def zeros(cls, layout: Layout) -> LayoutGradient:
         """A gradient to add to."""
-        return cls(np.zeros_like(layout.waypoint), np.zeros_like(layout.extent))
+        return cls(np.zeros(layout.waypoint.shape), np.zeros(layout.extent.shape))
 
 
 def pull_layout(layout: Layout, bar: LayoutGradient, segments_bar: SegmentsGradient) -> FloatArray:
     """Reverse of `Layout.of`: adds to the scales' gradient, returns that of the reaches."""
-    later = np.cumsum(bar.waypoint[::-1])[::-1]
-    segments_bar.scale += later[1:]
-    scales = np.stack([layout.segments.scale[:-1], layout.segments.scale[1:]], -1)
-    by_scale = np.sum(bar.extent * layout.corners.reach, axis=1)
-    segments_bar.scale[:-1] += by_scale[:, 0]
-    segments_bar.scale[1:] += by_scale[:, 1]
-    return bar.extent * scales[:, None, :]
+    reach_bar = np.empty(bar.extent.shape)
+    scale, reach = layout.segments.scale, layout.corners.reach
+    _pull_layout(scale, reach, bar.waypoint, bar.extent, segments_bar.scale, reach_bar)
+    return reach_bar
+
+
+@lean
+def _pull_layout(
+    scale: FloatArray,
+    reach: FloatArray,
+    waypoint_bar: FloatArray,
+    extent_bar: FloatArray,
+    scale_bar: FloatArray,
+    reach_bar: FloatArray,
+) -> None:
+    later = 0.0
+    for k in range(scale.size - 1, -1, -1):
+        later += waypoint_bar[k + 1]
+        scale_bar[k] += later
+    for i in range(reach.shape[0]):
+        for channel in range(3):
+            for side in range(2):
+                bar = extent_bar[i, channel, side]
+                scale_bar[i + side] += bar * reach[i, channel, side]
+                reach_bar[i, channel, side] = bar * scale[i + side]
 
 
 def flat_corners(kind: IntArray, tcp: bool, joint: bool) -> NDArray[np.bool_]:

@@ -56,11 +56,7 @@ def _on_joint_line(
 ) -> Reach | None:
     near, far = (1, 0) if segment == corner else (0, 1)
     q_wp, q_other = segments.ends.q[segment, near], segments.ends.q[segment, far]
-    distance, pull, pull_wp = tcp_apart(chain, q_wp, q_other, share)
+    distance, by_near, by_far, _ = tcp_apart(chain, q_wp, q_other, share)
     if distance < STILL:
         return None
-    parts: tuple[Part, ...] = (
-        (f"q{near}", segment, (1 - share) * pull - pull_wp),
-        (f"q{far}", segment, share * pull),
-    )
-    return Reach(distance, parts)
+    return Reach(distance, ((f"q{near}", segment, by_near), (f"q{far}", segment, by_far)))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 
 WAYPOINT = -1
 """Stands for a channel in `Pieces.source` where a boundary is a waypoint."""
@@ -123,7 +124,9 @@ class Pieces:
     @cached_property
     def interval_samples(self) -> IntArray:
         """(K,), index of the sample at the left end of each interval."""
-        return np.arange(self.first_interval[-1]) + self.interval_pieces
+        left = np.empty(self.first_interval[-1], dtype=np.int64)
+        _left_samples(self.intervals, left)
+        return left
 
     @cached_property
     def interval_ends(self) -> IntArray:
@@ -162,16 +165,39 @@ class Pieces:
         self, sigma_bar: FloatArray, waypoint_bar: FloatArray, extent_bar: FloatArray
     ) -> None:
         """Reverse of `sigma`: add to the gradients of the layout's waypoints and extents."""
-        piece, share = self.sample_pieces, self.sample_shares
-        edge_bar = np.zeros(len(self.edge))
-        np.add.at(edge_bar, piece, (1.0 - share) * sigma_bar)
-        np.add.at(edge_bar, piece + 1, share * sigma_bar)
-        waypoint, channel, side = self.source.T
-        np.add.at(waypoint_bar, waypoint, edge_bar)
-        zone = channel != WAYPOINT
-        sign = np.where(side == 0, -1.0, 1.0)
-        index = waypoint[zone] - 1, channel[zone], side[zone]
-        np.add.at(extent_bar, index, (sign * edge_bar)[zone])
+        first, edge_bar = self.first_sample, np.zeros(len(self.edge))
+        given = first, self.sample_shares, self.source, sigma_bar
+        _pull_sigma(*given, edge_bar, waypoint_bar, extent_bar)
+
+
+@lean
+def _left_samples(intervals: IntArray, left: IntArray) -> None:
+    k = 0
+    for p in range(intervals.size):
+        for _ in range(intervals[p]):
+            left[k] = k + p
+            k += 1
+
+
+@lean
+def _pull_sigma(
+    first: IntArray,
+    share: FloatArray,
+    source: IntArray,
+    sigma_bar: FloatArray,
+    edge_bar: FloatArray,
+    waypoint_bar: FloatArray,
+    extent_bar: FloatArray,
+) -> None:
+    for p in range(first.size - 1):
+        for k in range(first[p], first[p + 1]):
+            edge_bar[p] += (1.0 - share[k]) * sigma_bar[k]
+            edge_bar[p + 1] += share[k] * sigma_bar[k]
+    for k in range(edge_bar.size):
+        waypoint, channel, side = source[k, 0], source[k, 1], source[k, 2]
+        waypoint_bar[waypoint] += edge_bar[k]
+        if channel != WAYPOINT:
+            extent_bar[waypoint - 1, channel, side] += edge_bar[k] if side else -edge_bar[k]
 
 
 @cache

@@ -96,17 +96,12 @@ class EndsGradient:
         """A gradient to add to."""
         shape = ends.position.shape
         return cls(
-            np.zeros_like(ends.q),
+            np.zeros(ends.q.shape),
             np.zeros(shape),
             np.zeros(shape),
-            np.zeros_like(ends.prescribed),
-            np.zeros_like(ends.via),
-            np.zeros_like(ends.speed),
-            np.zeros_like(ends.acceleration),
-            np.zeros_like(ends.joint_speed),
-            np.zeros_like(ends.joint_acceleration),
-            np.zeros_like(ends.joint_fraction),
-            np.zeros_like(ends.joint_acceleration_fraction),
+            np.zeros(ends.prescribed.shape),
+            np.zeros(ends.via.shape),
+            *np.zeros((6, len(ends.kind))),
         )
 
 
@@ -164,12 +159,14 @@ class SegmentsGradient:
     def zeros(cls, segments: Segments) -> SegmentsGradient:
         """A gradient to add to."""
         names = cls.__dataclass_fields__
-        return cls(**{name: np.zeros_like(getattr(segments, name)) for name in names})
+        return cls(**{name: np.zeros(getattr(segments, name).shape) for name in names})
 
 
 def make_segments(ends: Ends) -> Segments:
     """The segments between the ends."""
     tcp = ends.kind != JOINT_SEGMENT
+    if not tcp.any():
+        return _joint_segments(ends)
     arc = ends.kind == ARC_SEGMENT
     delta_q = np.where(tcp[:, None], 0.0, ends.q[:, 1] - ends.q[:, 0])
     position = np.zeros((len(tcp), 3, 3))
@@ -207,6 +204,16 @@ def make_segments(ends: Ends) -> Segments:
     return Segments(
         ends, shape, delta_q, position, angle, turn_a, turn_b, turn, delta_prescribed, length, scale
     )
+
+
+def _joint_segments(ends: Ends) -> Segments:
+    """The segments of joint moves alone, of which nothing moves in TCP space."""
+    count, delta_q = len(ends.kind), ends.q[:, 1] - ends.q[:, 0]
+    none, vectors = np.zeros(count), np.zeros((count, 3))
+    axes = np.zeros((count, ends.prescribed.shape[2]))
+    scale, still = np.linalg.norm(delta_q, axis=1), (vectors, vectors, none, axes, none)
+    position = np.zeros((count, 3, 3))
+    return Segments(ends, np.full(count, LINE), delta_q, position, none, *still, scale)
 
 
 def in_time(segments: Segments, ramp: float | None) -> Segments:
@@ -304,6 +311,12 @@ def _relative(ends: Ends, turn_a: FloatArray) -> FloatArray:
 def pull_segments(segments: Segments, bar: SegmentsGradient, out: EndsGradient) -> None:
     """Reverse of `make_segments`; adds to ``out`` and uses up ``bar``."""
     ends = segments.ends
+    if segments.joint_moves_alone:
+        safe = np.where(segments.scale > 0, segments.scale, 1.0)
+        bar.delta_q += (bar.scale / safe)[:, None] * segments.delta_q
+        out.q[:, 1] += bar.delta_q
+        out.q[:, 0] -= bar.delta_q
+        return
     tcp = ends.kind != JOINT_SEGMENT
     arc = ends.kind == ARC_SEGMENT
     line = tcp & ~arc

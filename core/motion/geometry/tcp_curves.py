@@ -7,6 +7,7 @@ at waypoint i + 1 (a curve that is never evaluated where the corner is none).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -156,17 +157,24 @@ def make_tcp_curves(layout: Layout, blend: Blend, orientation: Blend) -> TcpGeom
 
 def _no_curves(layout: Layout, blend: Blend, orientation: Blend) -> TcpGeometry:
     """Curves that stand still, for paths of joint moves, which evaluate none."""
-    count = len(layout.segments.scale)
-    rotation = layout.segments.ends.rotation[:, 0]
     axes = layout.segments.delta_prescribed.shape[1]
-    blends = (blend, orientation, orientation)
+    curves, legs, slopes = _still(len(layout.segments.scale), axes, blend, orientation)
+    return TcpGeometry(layout, blend, curves, legs, legs, None, slopes)
+
+
+@lru_cache(maxsize=32)
+def _still(
+    count: int, axes: int, blend: Blend, orientation: Blend
+) -> tuple[TcpCurves, Legs, FloatArray]:
+    """Curves, legs and slopes of ``count`` segments that stand still."""
     position, turning, prescribed = (
         Curves.empty(2 * count - 1, dimension, law.coefficients)
-        for dimension, law in zip((3, 6, axes), blends, strict=True)
+        for dimension, law in ((3, blend), (6, orientation), (axes, orientation))
     )
-    curves = TcpCurves(position, turning, np.concatenate([rotation, rotation[1:]]), prescribed)
-    none = Legs(*(np.zeros((count - 1, 3)) for _ in range(4)))
-    return TcpGeometry(layout, blend, curves, none, none, None, np.ones((3, count - 1, 2)))
+    reference = np.tile(np.eye(3), (2 * count - 1, 1, 1))
+    curves = TcpCurves(position, turning, reference, prescribed)
+    legs = Legs(*(np.zeros((count - 1, 3)) for _ in range(4)))
+    return curves, legs, np.ones((3, count - 1, 2))
 
 
 def _blend_controls(blend: Blend, reach: FloatArray, before: Legs, after: Legs) -> FloatArray:

@@ -6,6 +6,7 @@ That is what ends a zone of a joint move.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -15,8 +16,15 @@ from ...robot.kinematics.chain_kernels import jacobian, pose
 from ...robot.kinematics.lean import inner, lean
 from ...spatial.rotation import rotation_vector
 
-Apart = tuple[float, FloatArray, FloatArray]
-"""How far, in m or rad, and its derivatives by the joints there and at the waypoint."""
+Apart = tuple[float, FloatArray, FloatArray, float]
+"""How far, in m or rad, its derivatives (N,) by the joints at the waypoint and at the line's other
+end, the share held, and by the share; zero where it is none."""
+
+
+@cache
+def _scratch(size: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Arrays that the kernels of N = ``size`` axes write in."""
+    return np.empty((3, 3)), np.empty((2, 3)), np.empty(size), np.empty((2, 6, size))
 
 
 def first_exit(
@@ -36,8 +44,7 @@ def first_exit(
     Returns:
         The share, or -1 if the TCP stays inside up to ``limit``.
     """
-    scratch = np.empty((2, 3)), np.empty(q_wp.size)
-    return float(_first_exit(chain, q_wp, q_other, radius, limit, np.empty((3, 3)), *scratch))
+    return float(_first_exit(chain, q_wp, q_other, radius, limit, *_scratch(q_wp.size)[:3]))
 
 
 @lean
@@ -115,50 +122,50 @@ def _distance(
 
 
 def tcp_apart(chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float) -> Apart:
-    """How far the TCP is from the waypoint at a share of a joint line, and how fast that changes.
+    """How far the TCP is from the waypoint at a share of a joint line, and how that changes.
 
     Args:
         chain: the kinematics.
         q_wp, q_other: (N,), the waypoint and the line's other end.
         share: of the line.
-
-    Returns:
-        The distance, m, and its derivatives (N,) with respect to the joints there and at the
-        waypoint; zero where the distance is.
     """
-    size = q_wp.size
-    pull, pull_wp = np.zeros(size), np.zeros(size)
-    q = (1 - share) * q_wp + share * q_other
-    J, R = np.empty((2, 6, size)), np.empty((3, 3))
-    distance = _tcp_apart(chain, q_wp, q, R, np.empty((2, 3)), J, pull, pull_wp)
-    return float(distance), pull, pull_wp
+    slopes = np.zeros((2, q_wp.size))
+    distance, speed = _tcp_apart(chain, q_wp, q_other, share, *_scratch(q_wp.size), slopes)
+    return distance, slopes[0], slopes[1], speed
 
 
 @lean
 def _tcp_apart(
     chain: Chain,
     q_wp: FloatArray,
-    q: FloatArray,
+    q_other: FloatArray,
+    share: float,
     R: FloatArray,
     places: FloatArray,
+    q: FloatArray,
     columns: FloatArray,
-    pull: FloatArray,
-    pull_wp: FloatArray,
-) -> float:
+    slopes: FloatArray,
+) -> tuple[float, float]:
+    """Distance and its slope by the share; writes those by the joints at both ends (2, N)."""
     p, p_wp, J, J_wp = places[0], places[1], columns[0], columns[1]
-    size = q.size
+    for j in range(q.size):
+        q[j] = (1 - share) * q_wp[j] + share * q_other[j]
     jacobian(chain, q_wp, R, p_wp, J_wp)
     jacobian(chain, q, R, p, J)
     square = 0.0
     for i in range(3):
         square += (p[i] - p_wp[i]) ** 2
-    distance = math.sqrt(square)
+    distance, speed = math.sqrt(square), 0.0
     if distance > 0.0:
-        for j in range(size):
+        for j in range(q.size):
+            there = at_waypoint = 0.0
             for i in range(3):
-                pull[j] += (p[i] - p_wp[i]) / distance * J[i, j]
-                pull_wp[j] += (p[i] - p_wp[i]) / distance * J_wp[i, j]
-    return distance
+                there += (p[i] - p_wp[i]) / distance * J[i, j]
+                at_waypoint += (p[i] - p_wp[i]) / distance * J_wp[i, j]
+            slopes[0, j] = (1 - share) * there - at_waypoint
+            slopes[1, j] = share * there
+            speed += there * (q_other[j] - q_wp[j])
+    return distance, speed
 
 
 def first_turn(
@@ -200,6 +207,8 @@ def tool_apart(chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float
     turn = rotation_vector(R[1] @ R[0].T)
     angle = float(np.linalg.norm(turn))
     if angle == 0.0:
-        return 0.0, np.zeros(q.size), np.zeros(q.size)
+        return 0.0, np.zeros(q.size), np.zeros(q.size), 0.0
     axis = turn / angle
-    return angle, axis @ J[1, 3:], axis @ J[0, 3:]
+    there = axis @ J[1, 3:]
+    by_waypoint = (1 - share) * there - axis @ J[0, 3:]
+    return angle, by_waypoint, share * there, float(there @ (q_other - q_wp))

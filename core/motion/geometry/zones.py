@@ -65,6 +65,7 @@ class ZonePlanner:
         self._limits = limits
         self._notes: list[Note] = []
         self._kept: dict[int, Reach] = {}
+        self._wanted: tuple[Sequence[Zone], list[Reaches]] = (), []
         self._known_halves: dict[tuple[int, int], Reach | None] = {}
 
     def corners(self, zones: Sequence[Zone]) -> Corners:
@@ -78,6 +79,7 @@ class ZonePlanner:
         """
         self._notes, self._kept = [], {}
         wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
+        self._wanted = zones, wanted
         overlapping: tuple[int, ...] = ()
         if self._model.overlap is Overlap.SHRINK:
             wanted, factors = shrunk(wanted)
@@ -126,7 +128,9 @@ class ZonePlanner:
         """
         if self._model.overlap is Overlap.HALF:
             return [room for i, zone in enumerate(zones) for room in self._halves(i, zone)]
-        wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
+        known, wanted = self._wanted
+        if known is not zones:
+            wanted = [self._reaches(i, zone) for i, zone in enumerate(zones)]
         return [
             Room(Reach(1.0) + own * Reach(-1.0), min(k, len(wanted) - 1))
             for k in range(len(wanted) + 1)
@@ -416,13 +420,12 @@ class ZonePlanner:
         share = exits(chain, q_wp, q_other, size.value, limit.value)
         if share < 0.0:
             return limit
-        _, pull, pull_wp = apart(chain, q_wp, q_other, share)
-        speed = float(pull @ (q_other - q_wp))
+        _, by_near, by_far, speed = apart(chain, q_wp, q_other, share)
         if speed <= 0.0:
             return Reach(share)
         parts: list[Part] = [(n, k, g / speed) for n, k, g in size.parts]
-        parts.append((f"q{near}", segment, -((1 - share) * pull - pull_wp) / speed))
-        parts.append((f"q{far}", segment, -share * pull / speed))
+        parts.append((f"q{near}", segment, by_near / -speed))
+        parts.append((f"q{far}", segment, by_far / -speed))
         return Reach(share, tuple(parts))
 
     def _lessened(self, i: int, pairs: Reaches) -> Reaches:

@@ -163,14 +163,14 @@ class Derivatives:
         return self._gather(route_bar, speeds)
 
     def _gather(self, route_bar: RouteGradient, speeds: SpeedGradient) -> ProgramGradient:
-        """From segments and waypoints to the moves of the program."""
+        """From segments and waypoints to the moves of the program, one of each at most."""
         path, model = self._path, self._path.model
         count, size = len(self._program.moves), path.q.shape[1]
         moves = np.array(path.route.moves)
         owners = np.array(path.route.zone_moves, dtype=np.int64)
         zone = ZoneGradient.zeros(count)
         for name in ZoneGradient.__dataclass_fields__:
-            np.add.at(getattr(zone, name), owners, getattr(route_bar.zones, name))
+            getattr(zone, name)[owners] = getattr(route_bar.zones, name)
         speeds.tcp += route_bar.ends.speed
         speeds.tcp_acceleration += route_bar.ends.acceleration
         for name in (
@@ -183,9 +183,9 @@ class Derivatives:
             getattr(speeds, name)[:] += getattr(route_bar.ends, along)
         by_move = SpeedGradient.zeros(count)
         for name in SpeedGradient.__dataclass_fields__:
-            np.add.at(getattr(by_move, name), moves, getattr(speeds, name))
+            getattr(by_move, name)[moves] = getattr(speeds, name)
         via = np.zeros((count, 3))
-        np.add.at(via, moves, route_bar.ends.via)
+        via[moves] = route_bar.ends.via
         position, turn, joints = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, size))
         start = self._pull_targets(route_bar, position, turn, joints)
         return ProgramGradient(

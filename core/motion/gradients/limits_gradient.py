@@ -6,9 +6,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ..geometry.pieces import PieceIndices, Pieces
 from ..geometry.segments import Segments
 from ..geometry.swivel import pull_turn_shares
@@ -40,7 +40,7 @@ class SpeedGradient:
     @classmethod
     def zeros(cls, count: int) -> SpeedGradient:
         """A gradient to add to."""
-        return cls(*(np.zeros(count) for _ in cls.__dataclass_fields__))
+        return cls(*np.zeros((len(cls.__dataclass_fields__), count)))
 
 
 def _pull_segment_limits(
@@ -89,7 +89,7 @@ def _pull_torque_rows(
     return out, np.asarray(most_bar)
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def _pull_fill(
     states: States,
     pieces: PieceIndices,
@@ -105,12 +105,12 @@ def _pull_fill(
     states_bar: States,
     velocity_bar: FloatArray,
     acceleration_bar: FloatArray,
+    scratch: FloatArray,
 ) -> None:
     """Reverse of `limits._fill`."""
     first_sample, first_interval, segment = pieces
     axes = states.q.shape[1]
-    rate, bend = np.empty(axes + 2), np.empty(axes + 2)
-    rate_bar, bend_bar = np.empty(axes + 2), np.empty(axes + 2)
+    rate, bend, rate_bar, bend_bar = scratch[0], scratch[1], scratch[2], scratch[3]
     for p in range(segment.size):
         s = segment[p]
         count = first_interval[p + 1] - first_interval[p]
@@ -211,6 +211,7 @@ def pull_path_limits(
         states_bar,
         velocity_bar,
         acceleration_bar,
+        np.empty((4, shape[2])),
     )
     shares_bar = None
     if made.shares is not None:
@@ -226,5 +227,7 @@ def pull_path_limits(
 
 def pull_turning(segments: Segments, turning_bar: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Gradients (M, 3) of the segments' turns a and b from that of `SegmentLimits.turning`."""
+    if not segments.ends.swivels.any():
+        return np.zeros_like(segments.turn_a), np.zeros_like(segments.turn_b)
     bar = np.where(segments.ends.swivels, turning_bar, 0.0)
     return pull_turn_shares(segments.turn_a, segments.turn_b, bar)

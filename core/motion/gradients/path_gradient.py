@@ -81,12 +81,8 @@ def pull_path(
     joint_bar.window[len(route.moves) :] += timed_bar.window
     sigma_bar += timed_bar.sigma
     curves = path.tcp.curves
-    tcp_bar = TcpCurves(
-        curves.position.zeros_like(),
-        curves.turning.zeros_like(),
-        np.zeros_like(curves.reference),
-        curves.prescribed.zeros_like(),
-    )
+    # On paths of joint moves alone nothing is added to it.
+    tcp_bar = curves if layout.segments.joint_moves_alone else curves.zeros_like()
     sample_piece = pieces.sample_pieces
     for stretch in stretches(route, layout, pieces):
         rows = slice(stretch.start, stretch.stop)

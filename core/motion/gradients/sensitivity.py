@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
+from ...robot.kinematics.lean import lean
 from ..geometry.corners import POSITION, STOP
 from ..geometry.joint_curves import quintics
 from ..geometry.reach import Reach
@@ -80,6 +81,12 @@ def configurations(path: Path, places: PathPlaces) -> FloatArray:
     """(L, N), the configurations at the places."""
     if not path.segments.joint_moves_alone:
         return _between_samples(path, sigma_of(path, places))
+    if path.model.joint.kind != "quintic":
+        q = np.empty((len(places.part), path.q.shape[1]))
+        corners, law = path.corners, path.model.joint.coefficients
+        given = path.segments.ends.q, corners.kind, corners.reach, law
+        _configurations(*given, places.part, places.share, q)
+        return q
     base, entering, leaving = _weights(path, places)
     waypoints = _waypoints(path)
     before, after = _neighbours(path, places)
@@ -88,6 +95,42 @@ def configurations(path: Path, places: PathPlaces) -> FloatArray:
     q = waypoints[base]
     q = q + (reach[:, 0] * entering)[:, None] * steps[before]
     return np.asarray(q + (reach[:, 1] * leaving)[:, None] * steps[after])
+
+
+@lean
+def _configurations(
+    ends: FloatArray,
+    kind: IntArray,
+    reach: FloatArray,
+    law: FloatArray,
+    part: IntArray,
+    share: FloatArray,
+    q: FloatArray,
+) -> None:
+    """`configurations` where corners are polynomials; see `_weights`."""
+    count = ends.shape[0]
+    for k in range(part.size):
+        zone, s = part[k] >= count, share[k]
+        corner = part[k] - count if zone else part[k]
+        arriving = leaving = 0.0
+        if zone:
+            f = g = 0.0
+            for i in range(law.shape[1] - 1, -1, -1):
+                f, g = f * s + law[1, i], g * s + law[2, i]
+            if kind[corner] != STOP:
+                arriving = reach[corner, POSITION, 0] * (f - 1.0)
+                leaving = reach[corner, POSITION, 1] * g
+            for j in range(q.shape[1]):
+                before, at, after = ends[corner, 0, j], ends[corner, 1, j], ends[corner + 1, 1, j]
+                q[k, j] = at + arriving * (at - before) + leaving * (after - at)
+            continue
+        if corner < count - 1 and kind[corner] != STOP:
+            arriving = reach[corner, POSITION, 0]
+        if corner > 0 and kind[corner - 1] != STOP:
+            leaving = reach[corner - 1, POSITION, 1]
+        along = leaving + (1.0 - arriving - leaving) * s
+        for j in range(q.shape[1]):
+            q[k, j] = ends[corner, 0, j] + along * (ends[corner, 1, j] - ends[corner, 0, j])
 
 
 class Sensitivity:

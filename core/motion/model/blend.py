@@ -183,6 +183,8 @@ class BlendGradient:
 
     def alpha_beta(self, blend: Blend) -> tuple[FloatArray, FloatArray]:
         """The gradient of the coefficients of α and β."""
+        if not (self.coefficients.any() or self.slopes.any()):
+            return np.zeros(len(blend.alpha)), np.zeros(len(blend.beta))
         alpha, beta = blend.pull_coefficients(self.coefficients)
         powers = np.arange(len(alpha))
         return alpha + self.slopes[0] * (powers == 1) + self.slopes[1] * powers, beta

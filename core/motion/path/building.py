@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from ...arrays import FloatArray, IntArray
 from ...errors import FaultCause, MotionError, Note
 from ...robot.kinematics.chain import Chain
+from ...robot.kinematics.lean import lean
 from ...robot.singularities import nearest_singularity
 from ..geometry.corners import JOINT_CORNER, POSITION
 from ..geometry.curves import Curves, Samples, TcpCurves
@@ -70,7 +72,9 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
         sigma, states, conditioning = _sampled(route, layout, tcp.curves, joint, edges, pieces)
     _check_joined(route, pieces, states.q)
     notes = (*route.notes, *corners.notes, *_singular_notes(route, pieces, states.q, conditioning))
-    return Path(route, model, layout, tcp, joint, edges, pieces, sigma, states, conditioning, notes)
+    sampled = sigma, states, conditioning
+    rooms = partial(planner.rooms, route.zones)
+    return Path(route, model, layout, tcp, joint, edges, pieces, *sampled, rooms, notes)
 
 
 def _sampled(
@@ -111,6 +115,8 @@ def _coarse(pieces: Pieces, sigma: FloatArray, states: States) -> NDArray[np.boo
     Next to a singular configuration axes turn by half a turn within a fraction of a millimetre;
     timing and motion between samples are made of what samples tell.
     """
+    if pieces.joint_space.all():
+        return np.zeros(len(pieces.segment), dtype=np.bool_)
     h = np.diff(sigma)[:, None]
     told = (h**2 / 12) * (states.ddq[:-1] - states.ddq[1:])
     told += (0.5 * h) * (states.dq[:-1] + states.dq[1:])
@@ -304,6 +310,8 @@ def _follow(
 def _check_joined(route: Route, pieces: Pieces, q: FloatArray) -> None:
     """Refuse a path on which the joints jump from one piece to the next, or at its stops."""
     first, ends = pieces.first_sample, route.ends.q
+    if _joined(ends, pieces.stop, pieces.source, first, q):
+        return
     arrive = np.concatenate([ends[:1, 0], ends[:, 1]])
     leave = np.concatenate([ends[:, 0], ends[-1:, 1]])
     left = np.concatenate([arrive[:1], q[first[1:] - 1]])
@@ -330,13 +338,38 @@ def _check_joined(route: Route, pieces: Pieces, q: FloatArray) -> None:
     )
 
 
+@lean
+def _joined(
+    ends: FloatArray, stop: NDArray[np.bool_], source: IntArray, first: IntArray, q: FloatArray
+) -> bool:
+    """Whether the joints go on where they are, from piece to piece and at stops."""
+    last = ends.shape[0]
+    for k in range(stop.size):
+        at = source[k, 0]
+        for j in range(q.shape[1]):
+            arrive = ends[at - 1, 1, j] if at > 0 else ends[0, 0, j]
+            leave = ends[at, 0, j] if at < last else ends[last - 1, 1, j]
+            left = q[first[k] - 1, j] if k > 0 else ends[0, 0, j]
+            right = q[first[k], j] if k + 1 < stop.size else ends[last - 1, 1, j]
+            # Comparisons that fail for what is not a number, too.
+            if stop[k]:
+                if not (abs(left - arrive) <= JOINED and abs(right - leave) <= JOINED):
+                    return False
+            elif not abs(right - left) <= JOINED:
+                return False
+    return True
+
+
 def _singular_notes(
     route: Route, pieces: Pieces, q: FloatArray, conditioning: FloatArray
 ) -> list[Note]:
     """One note for every move with a stretch near a singularity."""
+    near = conditioning < NEAR_SINGULAR
+    if not near.any():
+        return []
     segment = pieces.segment[pieces.sample_pieces]
     notes = []
-    for k in np.unique(segment[conditioning < NEAR_SINGULAR]):
+    for k in np.unique(segment[near]):
         rows = np.flatnonzero(segment == k)
         worst = rows[np.argmin(conditioning[rows])]
         kind = nearest_singularity(route.robot, q[worst])

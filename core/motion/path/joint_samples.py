@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from ...arrays import FloatArray, IntArray
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import (
-    acceleration_gradient,
-    jacobian,
+    COLUMNS,
     motion,
-    velocity_gradient,
+    pull_acceleration,
+    pull_rates,
+    pull_velocity,
+    walk_motion,
 )
 from ...robot.kinematics.lean import lean
 from ..geometry.curves import Curves, evaluate, pull
@@ -44,7 +45,6 @@ def _sample_joint(
         motion(chain, states.q[k], states.dq[k], states.ddq[k], states.v[k], states.a[k])
 
 
-@njit(cache=True, error_model="numpy")
 def pull_joint(
     chain: Chain,
     curves: Curves,
@@ -56,28 +56,40 @@ def pull_joint(
     sigma_bar: FloatArray,
 ) -> None:
     """Reverse of `sample_joint`; adds to ``gradient`` and ``sigma_bar`` (S,)."""
-    size = states.q.shape[1]
-    basis, value_bar = np.empty((6, 4)), np.empty((3, size))
-    R, p, J = np.empty((3, 3)), np.empty(3), np.empty((6, size))
+    value_bar, walk = np.empty((3, states.q.shape[1])), np.empty((chain.joint.size + 1, COLUMNS, 3))
+    scratch = np.empty((6, 4)), value_bar, walk
+    _pull_joint(chain, curves, piece, sigma, states, states_bar, *scratch, gradient, sigma_bar)
+
+
+@lean
+def _pull_joint(
+    chain: Chain,
+    curves: Curves,
+    piece: IntArray,
+    sigma: FloatArray,
+    states: States,
+    states_bar: States,
+    basis: FloatArray,
+    value_bar: FloatArray,
+    walk: FloatArray,
+    gradient: Curves,
+    sigma_bar: FloatArray,
+) -> None:
     for k in range(sigma.size):
-        q, dq, ddq = states.q[k], states.dq[k], states.ddq[k]
         v_bar, a_bar = states_bar.v[k], states_bar.a[k]
-        value_bar[0], value_bar[1] = states_bar.q[k], states_bar.dq[k]
-        value_bar[2] = states_bar.ddq[k]
         moving = accelerating = False
         for i in range(6):
             moving = moving or v_bar[i] != 0.0
             accelerating = accelerating or a_bar[i] != 0.0
+        for j in range(value_bar.shape[1]):
+            value_bar[0, j], value_bar[1, j] = states_bar.q[k, j], states_bar.dq[k, j]
+            value_bar[2, j] = states_bar.ddq[k, j]
         if moving or accelerating:
-            jacobian(chain, q, R, p, J)
+            walk_motion(chain, states.q[k], states.dq[k], states.ddq[k], walk)
         if moving:
-            velocity_gradient(chain, q, dq, v_bar, value_bar[0])
-            for j in range(size):
-                for i in range(6):
-                    value_bar[1, j] += J[i, j] * v_bar[i]
+            pull_velocity(chain, walk, v_bar, value_bar[0])
+            pull_rates(chain, walk, v_bar, value_bar[1])
         if accelerating:
-            acceleration_gradient(chain, q, dq, ddq, a_bar, value_bar[0], value_bar[1])
-            for j in range(size):
-                for i in range(6):
-                    value_bar[2, j] += J[i, j] * a_bar[i]
+            pull_acceleration(chain, walk, a_bar, value_bar[0], value_bar[1])
+            pull_rates(chain, walk, a_bar, value_bar[2])
         sigma_bar[k] += pull(curves, piece[k], sigma[k], basis, value_bar, gradient)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,7 @@ from ...errors import MotionError, Note
 from ...program.zone import Zone
 from ...robot.kinematics.chain import Chain
 from ...robot.model import Robot
-from ..geometry.corners import Corners
+from ..geometry.corners import Corners, Room
 from ..geometry.curves import Curves
 from ..geometry.joint_curves import CornerEdges
 from ..geometry.layout import Layout, flat_corners
@@ -94,6 +95,7 @@ class Path:
         states: the samples; derivatives are with respect to σ.
         conditioning: (S,), of the Jacobian at TCP-space samples (smallest over largest pivot),
             1 elsewhere.
+        rooms: tells what room the vendor's rules leave between neighbouring zones.
         notes: zones cut short, near-singular stretches.
     """
 
@@ -107,6 +109,7 @@ class Path:
     sigma: FloatArray
     states: States
     conditioning: FloatArray
+    rooms: Callable[[], list[Room]]
     notes: tuple[Note, ...] = ()
 
     def __repr__(self) -> str:

@@ -257,7 +257,8 @@ class RouteFinder:
         pose(stage.chain, np.ascontiguousarray(q), rotation[0], position[0])
         kind = np.empty(count, dtype=np.int64)
         via, follows = np.zeros((count, 3)), np.zeros(count, dtype=bool)
-        via_rotation = np.tile(np.eye(3), (count, 1, 1))
+        via_rotation = np.zeros((count, 3, 3))
+        via_rotation[:, [0, 1, 2], [0, 1, 2]] = 1.0
         for k, i in enumerate(stage.moves):
             move = moves[i]
             kind[k] = JOINT_SEGMENT if isinstance(move, MoveJ) else LINE_SEGMENT
@@ -284,7 +285,7 @@ class RouteFinder:
                     kind[k] = ARC_SEGMENT
                 else:
                     legs.straight.append(i)
-        pairs = np.stack([np.arange(count), np.arange(count) + 1], -1)
+        pairs = np.arange(count)[:, None] + np.array([0, 1])
         prescribed = known[:, self._targets.prescribed]
         return Ends(
             kind,

@@ -122,6 +122,8 @@ def half_turns(
     Args:
         turned: indices of the moves on which the programmed configuration decides.
     """
+    if segments.joint_moves_alone:
+        return []
     turns = np.linalg.norm(np.stack([segments.turn_a, segments.turn_b]), axis=2).max(axis=0)
     half = (segments.ends.kind == LINE_SEGMENT) & keep & (turns > _HALF_TURN)
     return [

@@ -61,6 +61,8 @@ class RouteLegs:
 
     def joined(self) -> Ends:
         """The ends of all."""
+        if len(self.ends) == 1:
+            return self.ends[0]
         names = Ends.__dataclass_fields__
         return Ends(*(np.concatenate([getattr(e, name) for e in self.ends]) for name in names))
 
@@ -97,6 +99,8 @@ class RouteLegs:
 
 def rows_of(ends: Ends, which: NDArray[np.int64]) -> Ends:
     """Some of the ends."""
+    if len(which) == len(ends.kind):
+        return ends
     return Ends(*(getattr(ends, name)[which] for name in Ends.__dataclass_fields__))
 
 

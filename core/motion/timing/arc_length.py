@@ -117,13 +117,38 @@ class ArcLength:
 
 def _zones(layout: Layout, pieces: Pieces, flat: NDArray[np.bool_]) -> IntArray:
     """Samples and space of every zone that has an extent and whose law is flat at its ends."""
-    live = np.flatnonzero(flat)
-    extent = layout.extent[live, POSITION]
-    live, extent = (part[(extent > 0).all(axis=1)] for part in (live, extent))
-    first, _, last = pieces.around(layout.waypoint[live + 1], extent).T
-    joint = layout.corners.kind[live] == JOINT_CORNER
-    samples = pieces.first_sample
-    return np.stack([samples[first], samples[last + 1] - 1, joint], -1).astype(np.int64)
+    zones = np.empty((len(flat), 3), dtype=np.int64)
+    edge, samples, kind = pieces.edge, pieces.first_sample, layout.corners.kind
+    return zones[: _find_zones(layout.waypoint, layout.extent, flat, kind, edge, samples, zones)]
+
+
+@lean
+def _find_zones(
+    waypoint: FloatArray,
+    extent: FloatArray,
+    flat: NDArray[np.bool_],
+    kind: IntArray,
+    edge: FloatArray,
+    samples: IntArray,
+    zones: IntArray,
+) -> int:
+    """Write the zones; how many they are."""
+    count, p = 0, 0
+    for i in range(flat.size):
+        before, after = extent[i, POSITION, 0], extent[i, POSITION, 1]
+        if not (flat[i] and before > 0.0 and after > 0.0):
+            continue
+        begin, end = waypoint[i + 1] - before, waypoint[i + 1] + after
+        # Pieces whose middle lies between the zone's edges.
+        while p < edge.size - 1 and 0.5 * (edge[p] + edge[p + 1]) < begin:
+            p += 1
+        zones[count, 0] = samples[p]
+        while p < edge.size - 1 and 0.5 * (edge[p] + edge[p + 1]) < end:
+            p += 1
+        zones[count, 1] = samples[p] - 1
+        zones[count, 2] = kind[i] == JOINT_CORNER
+        count += 1
+    return count
 
 
 @inner

@@ -55,9 +55,11 @@ class ZoneStretches(NamedTuple):
             states: (S,) samples.
             least: s that each takes; zero for none.
         """
+        if least <= 0.0:
+            return cls(np.zeros(0, np.int64), np.zeros(0, np.int64))
         own = layout.extent[:, POSITION]
         corners = np.flatnonzero((layout.corners.kind != STOP) & (own > 0.0).all(axis=1))
-        if least <= 0.0 or not len(corners):
+        if not len(corners):
             return cls(np.zeros(0, np.int64), np.zeros(0, np.int64))
         at, knots = layout.waypoint[corners + 1], pieces.first_interval
         first, _, last = pieces.around(at, own[corners]).T

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -52,6 +53,8 @@ class SegmentLimits:
         turning: (M,), what share of its turn a segment's limits of turning count; see `swivel`.
         velocity_source, acceleration_source: (M, N + 2), name of the speed's number behind each
             and its derivative; used in reverse.
+        speeds, kinds: (M,), of the segments, which all this follows from but for swivels.
+        swivels: whether a segment turns its tool by one.
         zones_bind: whether zones have speeds of their own beside these: of legs that overlap,
             of the least time that a zone takes, of blends in time.
     """
@@ -64,6 +67,9 @@ class SegmentLimits:
     turning: FloatArray
     velocity_source: tuple[tuple[tuple[str, float] | None, ...], ...]
     acceleration_source: tuple[tuple[tuple[str, float] | None, ...], ...]
+    speeds: tuple[Speed, ...]
+    kinds: IntArray
+    swivels: bool
     zones_bind: bool = True
 
     @classmethod
@@ -90,7 +96,29 @@ class SegmentLimits:
             turning,
             tuple(tuple(source for _, source in limits) for limits, _ in made),
             tuple(tuple(source for _, source in limits) for _, limits in made),
+            tuple(speeds),
+            kinds,
+            bool(segments.ends.swivels.any()),
         )
+
+    def hold(self, speeds: Sequence[Speed], segments: Segments) -> bool:
+        """Whether they are those of segments driven at these speeds, too."""
+        return (
+            len(speeds) == len(self.speeds)
+            and all(a is b for a, b in zip(speeds, self.speeds, strict=True))
+            and segments.ends.kind.tobytes() == self.kinds.tobytes()
+            and segments.ends.override.tobytes() == self.override.tobytes()
+            and not (segments.ends.swivels.any() or self.swivels)
+        )
+
+    @cached_property
+    def limited(self) -> tuple[IntArray, IntArray]:
+        """Which of the N + 2 accelerations are limited somewhere, rising, and the place (N + 2,) of
+        each among them; −1 of the others."""
+        limited = np.flatnonzero((self.acceleration < np.inf).any(axis=0))
+        place = np.full(self.acceleration.shape[1], -1)
+        place[limited] = np.arange(len(limited))
+        return limited, place
 
     def with_velocities_scaled(self, segments: Sequence[int], factor: float) -> SegmentLimits:
         """The same with all velocities of some segments multiplied."""
@@ -101,6 +129,8 @@ class SegmentLimits:
 
 def _turning(segments: Segments) -> FloatArray:
     """(M,), the share of its turn that each segment's limits of turning count."""
+    if not segments.ends.swivels.any():
+        return np.ones(len(segments.turn))
     shares = turn_shares(segments.turn_a, segments.turn_b)
     return np.where(segments.ends.swivels, shares, 1.0)
 
@@ -264,15 +294,13 @@ def path_limits(
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
         known: of the same path with the same limits but of velocities; its rows are taken.
     """
-    limited = np.flatnonzero((limits.acceleration < np.inf).any(axis=0))
-    place = np.full(limits.acceleration.shape[1], -1)
-    place[limited] = np.arange(len(limited))
+    limited, place = limits.limited
     count, plain = int(pieces.first_interval[-1]), len(limited)
     torques = 0 if shares is None else 2 * shares.h.shape[1]
     if known is None:
         rows = StampRows(*(np.empty((count, 2, plain + torques)) for _ in range(4)))
     else:
-        place[:] = -1
+        place = np.full_like(place, -1)
         rows = known.rows.rows
     ceiling = np.full(count + 1, np.inf)
     binding = np.full((count + 1, 3), -1, dtype=np.int64)
@@ -298,7 +326,10 @@ def path_limits(
 def rooms(zones: SuperposedZones, timed: TimedZones, pieces: Pieces) -> FloatArray:
     """(P, 2), what limits of acceleration are multiplied by in each piece: of joints, and along
     the path."""
-    return np.stack([np.where(timed.timed, ROOM, 1.0), room_along(zones, pieces)], -1)
+    room = np.ones((len(pieces.segment), 2))
+    room[timed.timed, 0] = ROOM
+    room[:, 1] = room_along(zones, pieces)
+    return room
 
 
 def torque_left(pieces: Pieces, limits: SegmentLimits) -> FloatArray:

@@ -79,6 +79,8 @@ class TimedZones(NamedTuple):
             joint: its curves of joint space.
         """
         blends = layout.corners.timed
+        if not blends:
+            return cls.none(len(pieces.segment))
         corners = np.array(sorted(blends), dtype=np.int64)
         timed = np.zeros(len(pieces.segment), dtype=bool)
         owner = np.zeros(len(pieces.segment), dtype=np.int64)
@@ -95,6 +97,13 @@ class TimedZones(NamedTuple):
         knot = sample - piece[sample]
         return cls(knot, sample, corner, duration, window, sigma[sample], slope, timed)
 
+    @classmethod
+    def none(cls, pieces: int) -> TimedZones:
+        """Of a path of so many pieces that has no such zone."""
+        index, number = np.zeros(0, dtype=np.int64), np.zeros(0)
+        timed = np.zeros(pieces, dtype=bool)
+        return cls(index, index, index, number, np.zeros((0, 4)), number, number, timed)
+
     @property
     def rate(self) -> FloatArray:
         """(Q,), σ̇ per s."""
@@ -102,6 +111,8 @@ class TimedZones(NamedTuple):
 
     def lower(self, ceiling: FloatArray, binding: IntArray) -> None:
         """Lower ceilings (K + 1,) to how fast the zones are driven, noting where that binds."""
+        if not len(self.knot):
+            return
         x = self.rate**2
         lower = x < ceiling[self.knot]
         knot = self.knot[lower]
@@ -112,6 +123,8 @@ class TimedZones(NamedTuple):
 
     def pull(self, ceiling_bar: FloatArray, binding: IntArray, out: TimedGradient) -> None:
         """Reverse of `lower`: adds to the gradient."""
+        if not len(self.knot):
+            return
         bound = binding[self.knot]
         bars = np.where(
             (bound[:, 1] == TIMED) & (bound[:, 0] == self.sample), ceiling_bar[self.knot], 0.0

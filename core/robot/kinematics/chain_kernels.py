@@ -356,6 +356,19 @@ def acceleration_gradient(
 
 
 @inner
+def pull_rates(chain: Chain, walk: FloatArray, w: FloatArray, grad_dq: FloatArray) -> None:
+    """Add the gradient of w · (J q̇), w (6,), with respect to q̇: Jᵀ w, by the axes of a walk."""
+    force, torque, last = (w[0], w[1], w[2]), (w[3], w[4], w[5]), walk.shape[0] - 1
+    for k in range(last):
+        axis = recall(walk, k, AXIS)
+        if chain.prismatic[k]:
+            grad_dq[chain.joint[k]] += dot(force, axis)
+            continue
+        r = subtract(recall(walk, last, ORIGIN), recall(walk, k, ORIGIN))
+        grad_dq[chain.joint[k]] += dot(force, cross(axis, r)) + dot(torque, axis)
+
+
+@inner
 def pull_acceleration(
     chain: Chain, walk: FloatArray, w: FloatArray, grad_q: FloatArray, grad_dq: FloatArray
 ) -> None:

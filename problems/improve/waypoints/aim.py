@@ -15,7 +15,7 @@ from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.motion.path.path import Path
 from ....core.program.program import Program
 from ..rounding import STEP
-from .block_emulation import crowd, rooms_of
+from .block_emulation import crowd
 from .variables import ProgramVariables
 
 COARSE, FINE = 2, 4
@@ -87,7 +87,7 @@ def with_room(
         except MotionError:
             return x
         corners = path.route.zone_moves
-        tight = {corners[room.corner] for room in rooms_of(path) if room.left.value < -_TIGHT}
+        tight = {corners[room.corner] for room in path.rooms() if room.left.value < -_TIGHT}
         for move in moves - set(path.route.moves):
             tight |= {move - 1, move, move + 1}
         if not tight:

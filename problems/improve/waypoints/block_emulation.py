@@ -12,7 +12,6 @@ from ....core.errors import MotionError, Note
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.geometry.corners import Room
 from ....core.motion.geometry.segments import left_jacobian
-from ....core.motion.geometry.zones import ZonePlanner
 from ....core.motion.gradients.path_gradient import SINGULAR_TARGET
 from ....core.motion.gradients.segment_tangents import SIZES, Directions, end_jacobians
 from ....core.motion.gradients.sensitivity import (
@@ -141,7 +140,7 @@ class Driver:
         except MotionError:
             return None
         return DrivenBlock(
-            x, program, path, timing, rooms_of(path), configurations(path, self.places)
+            x, program, path, timing, tuple(path.rooms()), configurations(path, self.places)
         )
 
     def _planned(self, x: FloatArray) -> tuple[Program, Path] | None:
@@ -194,13 +193,6 @@ def _counts(path: Path, density: int) -> IntArray:
     """Intervals between the places of each straight part."""
     wanted = np.ceil(density * path.segments.scale / _STRAIGHT)
     return np.clip(wanted, density * _LEAST, density * _MOST).astype(np.int64)
-
-
-def rooms_of(path: Path) -> tuple[Room, ...]:
-    """What room the vendor's rules leave between neighbouring zones of a path."""
-    route = path.route
-    planner = ZonePlanner(path.segments, route.chains, path.model, route.moves, route.robot.limits)
-    return tuple(planner.rooms(route.zones))
 
 
 def _places(path: Path, density: int) -> PathPlaces:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from functools import cached_property
 
@@ -41,7 +41,11 @@ class Shared:
         controller, task, effort: see `optimize`.
         scenes: of the whole program's moves.
         clearance: m to keep.
-        blocks: the problems.
+        blocks: of it.
+
+    Attributes:
+        problems: that have been set up, by whether they are fine, block and aim: searches of one
+            block go on from each other.
     """
 
     controller: Controller
@@ -50,6 +54,9 @@ class Shared:
     effort: Effort
     clearance: float
     blocks: tuple[MoveBlock, ...]
+    problems: dict[tuple[bool, int, float, int], BlockProblem] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @cached_property
     def searching(self) -> Controller:
@@ -57,6 +64,29 @@ class Shared:
         other = copy(self.controller)
         other.sampling = self.effort.sampling
         return other
+
+    def problem(self, fine: bool, block: int, aim: Aim) -> BlockProblem:
+        """A block as a problem, with the controller's own sampling or that of searches.
+
+        Raises:
+            MotionError: it cannot be driven as it was given.
+        """
+        key = fine, block, aim.margin, aim.density
+        if aim.more is None and key in self.problems:
+            return self.problems[key]
+        made = BlockProblem(
+            self.controller if fine else self.searching,
+            self.blocks[block],
+            self.scenes_of(block),
+            self.task,
+            self.clearance + aim.margin,
+            self.clearance,
+            aim.density,
+            aim.more,
+        )
+        if aim.more is None:
+            self.problems[key] = made
+        return made
 
     def scenes_of(self, block: int) -> SceneOf:
         """The scenes of one block's moves."""
@@ -140,10 +170,10 @@ def work(shared: Shared, job: Job) -> Answer:
     """Do a job."""
     margin = shared.effort.margin
     if job.stage is JobStage.SEARCH:
-        return _searched(shared.searching, shared, job, SearchEffort(job.iterations), Aim(margin))
+        return _searched(shared, job, SearchEffort(job.iterations), Aim(margin), fine=False)
     if job.stage is JobStage.REFINE:
         settings = SearchEffort(job.iterations, FINE_BOX)
-        return _searched(shared.controller, shared, job, settings, Aim(margin, FINE))
+        return _searched(shared, job, settings, Aim(margin, FINE))
     if shared.task.rounding.predefined:
         shared, job = _with_chosen_zones(shared, job)
     at_end = job.refined is not None and job.refined.memory.box <= _AGAIN_BOX
@@ -160,21 +190,12 @@ def work(shared: Shared, job: Job) -> Answer:
 
 
 def _searched(
-    controller: Controller, shared: Shared, job: Job, settings: SearchEffort, aim: Aim
+    shared: Shared, job: Job, settings: SearchEffort, aim: Aim, fine: bool = True
 ) -> Answer:
     """The best values near a start."""
     memory = job.memory
     try:
-        problem = BlockProblem(
-            controller,
-            shared.blocks[job.block],
-            shared.scenes_of(job.block),
-            shared.task,
-            shared.clearance + aim.margin,
-            shared.clearance,
-            aim.density,
-            aim.more,
-        )
+        problem = shared.problem(fine, job.block, aim)
         start = problem.point(memory.x)
     except MotionError:
         # As it is it can be driven, but not with these zones, or this sampling.
@@ -223,7 +244,7 @@ class _Refined:
         job = replace(self.job, memory=Memory(self.job.memory.x, _AGAIN_BOX))
         answer, self.refined = self.refined, None
         if answer is None:
-            answer = _searched(shared.controller, shared, job, settings, self.aim)
+            answer = _searched(shared, job, settings, self.aim)
         if not shared.task.rounding.predefined:
             # Predefined: the next smaller zone would be far smaller; to be cut by a hair does no
             # harm.

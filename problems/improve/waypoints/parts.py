@@ -135,7 +135,7 @@ class JointPoint(ViaPoint):
         return np.eye(self.size)
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
-        by_joint = made.joints[list(self.moves)][:, list(self.axes)].sum(axis=0)
+        by_joint = made.joints[np.ix_(self.moves, self.axes)].sum(axis=0)
         return np.asarray(by_joint @ self.slope(values))
 
 
@@ -211,7 +211,8 @@ class ZonePart(ProgramPart):
         rows = list(self.moves)
         sizes = made.zone, made.zone_reorientation, made.zone_external, made.zone_angle
         pairs = zip(sizes, self.rates(), strict=True)
-        return np.array([sum(float(size[rows].sum()) * rate for size, rate in pairs)])
+        found = [float(size[rows].sum()) * rate for size, rate in pairs if rate != 0.0]
+        return np.array([sum(found)])
 
 
 @dataclass(frozen=True)
