@@ -39,9 +39,9 @@ _TINY_BOX = 2e-4
 _SECOND_ORDER = 0.5
 """Share of the promised fall below which a violated step is corrected."""
 _STALLS = 3
-_AROUND, _CLOSER, _LEAST_AROUND = 0.05, 0.3, 0.004
-"""Where a search that is stuck looks around: first distance in units of the scale, how much closer
-each next time, and the distance at which it is given up."""
+_AROUND = 0.05
+"""How far a search that is stuck looks around, in units of the scale. Looking again, closer, costs
+more than it finds."""
 _BOX_AROUND = 5.0
 _ABOVE = 1e-4
 """Height above the objective from which on a remembered plane is no kink's."""
@@ -156,14 +156,14 @@ class Memory:
         box: trust box, in units of the variables' scale.
         price: μ.
         kinks: remembered gradients.
-        around: how far to look around when the search gets stuck, in units of the scale.
+        looked: whether it has looked around where it got stuck.
     """
 
     x: FloatArray
     box: float
     price: float = _FIRST_PRICE
     kinks: tuple[Kink, ...] = ()
-    around: float = _AROUND
+    looked: bool = False
 
 
 @dataclass
@@ -179,7 +179,7 @@ class _State(Generic[P]):
     box: float
     price: float
     kinks: list[Kink]
-    around: float
+    looked: bool
     stalls: int = 0
     rows: IntArray | None = None
     jacobian: FloatArray | None = None
@@ -223,7 +223,7 @@ def search(
     """
     known = Memory(start.x, settings.box) if memory is None else memory
     state = _State(
-        start, model.gradient(start), known.box, known.price, list(known.kinks), known.around
+        start, model.gradient(start), known.box, known.price, list(known.kinks), known.looked
     )
     best, finished = start, False
     for _ in range(settings.iterations):
@@ -233,11 +233,11 @@ def search(
         settled = violation(state.point) <= settings.feasible
         state.stalls = state.stalls + 1 if settled and fall < settings.tolerance else 0
         if state.stalls >= _STALLS or state.box < _TINY_BOX:
-            finished = state.around < _LEAST_AROUND
+            finished = state.looked
             if finished:
                 break
             _look_around(model, state)
-    memory = Memory(state.point.x, state.box, state.price, tuple(state.kinks), state.around)
+    memory = Memory(state.point.x, state.box, state.price, tuple(state.kinks), state.looked)
     return SearchResult(best, violation(best), finished, memory)
 
 
@@ -253,13 +253,13 @@ def _look_around(model: SearchModel[P], state: _State[P]) -> None:
     random = np.random.default_rng(n)
     state.kinks.clear()
     for direction in random.uniform(-1.0, 1.0, (count, n)):
-        x = state.point.x + state.around * model.scale * direction
+        x = state.point.x + _AROUND * model.scale * direction
         near = model.point(np.clip(x, model.lower, model.upper))
         if near is not None:
             state.kinks.append(Kink(near.x, near.objective, model.gradient(near)))
-    state.box = _BOX_AROUND * state.around
+    state.box = _BOX_AROUND * _AROUND
     state.stalls = 0
-    state.around *= _CLOSER
+    state.looked = True
 
 
 def _better(point: SearchPoint, other: SearchPoint, feasible: float) -> bool:
