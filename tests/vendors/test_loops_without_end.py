@@ -94,6 +94,23 @@ def test_a_way_out_in_the_body_ends_it(language, foreseen) -> None:
     assert not foreseen
 
 
+FASTER = {"abb": "n:=n*1.05+1;\n", "ur": "n=n*1.05+1\n"}
+LAYERS = {"abb": "k:=k+1;\nIF k MOD 150=0 THEN\nn:=n+1;\nENDIF\n",
+          "kuka": "k=k+1\nIF k-150*(k/150)==0 THEN\nn=n+1\nENDIF\n",
+          "ur": "k=k+1\nif k % 150 == 0:\nn=n+1\nend\n"}  # fmt: skip
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_a_counter_that_steps_unevenly_foresees_nothing(language, foreseen) -> None:
+    """Faster and faster, or once in a layer of 150."""
+    if language in FASTER:
+        body = MOVE[language].replace("k", "0"), FASTER[language]
+        assert read(language, WHILE[language].format("<99999999", *body)) == 317
+    body = MOVE[language].replace("k", "0"), LAYERS[language]
+    assert read(language, WHILE[language].format("<3", *body)) == 450
+    assert not foreseen
+
+
 @pytest.mark.parametrize("language", FOR)
 def test_a_for_that_counts_too_far_is_foreseen(language, foreseen) -> None:
     assert read(language, FOR[language].format(MOVE[language])) == 1

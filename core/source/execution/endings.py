@@ -22,7 +22,10 @@ FOLLOWED_UNMOVED = 1000
 """The same where it has a condition, which may well end it, or does not move the robot."""
 FORESEEN = 100
 """Passes after which it is foreseen how many more a loop has that moves the robot, and that nothing
-but its condition ends: from how far that came nearer to its end in the second half of them."""
+but its condition ends: from how far that came nearer to its end in the second half of them, if it
+did so evenly in both halves of that."""
+_EVEN = 1e-9
+"""Share by which such halves may differ."""
 _UNMOVED = "does not move the robot, as nothing fulfils the conditions of its motion"
 
 
@@ -210,14 +213,17 @@ class Endings(Generic[Block]):
         loop, meter = passes.loop, self._host.meter
         half = FORESEEN // 2
         if passes.count == half and not self._analysis.ways_out(loop.body):
-            passes.distance, passes.moved = loop.distance(), meter.moves
-        if passes.count != FORESEEN or passes.distance is None:
+            passes.distances, passes.moved = [loop.distance()], meter.moves
+        elif passes.distances and passes.count in (half + half // 2, FORESEEN):
+            passes.distances.append(loop.distance())
+        if passes.count != FORESEEN or None in passes.distances or not passes.distances:
             return
-        distance = loop.distance()
-        if distance is not None:
-            nearer = (passes.distance - distance) / half
-            left = distance / nearer if nearer > 0 else math.inf
-            meter.ahead(left, (meter.moves - passes.moved) / half, loop.words, loop.span)
+        first, middle, distance = (float(one) for one in passes.distances if one is not None)
+        nearer = (first - distance) / half
+        if nearer == 0.0 or abs(first - 2.0 * middle + distance) > _EVEN * abs(first - distance):
+            return  # it comes nearer now and then, or faster and faster
+        left = distance / nearer if nearer > 0 else math.inf
+        meter.ahead(left, (meter.moves - passes.moved) / half, loop.words, loop.span)
 
     def _polls(self, passes: Passes[Block]) -> bool:
         """Whether a loop that does not come to move the robot by itself waits for others to tell it

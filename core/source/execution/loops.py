@@ -98,8 +98,9 @@ class Passes(Generic[Block]):
         begun: for each pass, how many moves had been read before it.
         left_to_others: whether outputs that its condition reads have just been left to others: it
             is to be asked again.
-        distance, moved: how far its condition was from ending it half way to `FORESEEN` passes, and
-            how many moves had been read then.
+        distances: how far its condition was from ending it half way to `FORESEEN` passes, half way
+            from there, and then.
+        moved: how many moves had been read half way.
         polled: whether what its motion depends on has been left to others.
     """
 
@@ -121,7 +122,7 @@ class Passes(Generic[Block]):
     begun: list[int] = field(default_factory=list)
     left_to_others: bool = False
     polled: bool = False
-    distance: float | None = None
+    distances: list[float | None] = field(default_factory=list)
     moved: int = 0
 
     def __post_init__(self) -> None:
