@@ -21,6 +21,7 @@ from ...core.recording import Recording, comments, listed
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
 from ...core.source.write.options import OpaqueStyle, StructureStyle
+from .values.types import external_fields
 from .write.numbers import number
 from .write.options import KrlOptions
 from .write.writer import HEADER, TextAround, compose, module_name, source_text
@@ -219,8 +220,8 @@ def _axes(robot: Robot) -> list[str]:
         for k, joint in enumerate(robot.joints, 1)
     ]
     return arm + [
-        f"FB_Q[I].E{k}*{'0.001' if axis.joint.kind is linear else _RAD}"
-        for k, axis in enumerate(robot.external_axes, 1)
+        f"FB_Q[I].{name.upper()}*{'0.001' if axis.joint.kind is linear else _RAD}"
+        for name, axis in zip(external_fields(robot), robot.external_axes, strict=True)
     ]
 
 

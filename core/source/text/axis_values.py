@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ...arrays import FloatArray
+from ...door import spelt
 from ...robot.joint import JointKind
 from ...robot.model import Robot
 
@@ -33,3 +34,14 @@ def _slides(robot: Robot | None, count: int) -> list[bool]:
     if robot is None:
         return [False] * count
     return [joint.kind is JointKind.PRISMATIC for joint in robot.joints]
+
+
+def cell_axis(name: str, robot: Robot | None) -> str:
+    """What to write into a cell file for an external axis, to stand at the end of a message."""
+    arm = "vendor/robot" if robot is None else robot.name
+    return (
+        f'; to drive it, give a cell file ({spelt("cell")}): robot = "{arm}", '
+        f'[external_axis.{name}] with role = "table" or "track", kind = "revolute", axis, '
+        'range_deg, speed_deg_s and acceleration_deg_s2, or kind = "prismatic", axis, range_mm, '
+        "speed_mm_s and acceleration_mm_s2; pose if it is not at the world's origin"
+    )

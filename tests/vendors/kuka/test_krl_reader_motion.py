@@ -6,20 +6,21 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.core.errors import FlybyError, SourceError
+from flyby.core.errors import FlybyError, InputError, SourceError
 from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import EventAnchor
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone
-from flyby.core.registry import find_robot
+from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
 from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.vendors.kuka.motion.arcs import beyond
@@ -363,7 +364,10 @@ def test_external_axes(krl, robot):
     assert first.target.external == (1.5, math.radians(45))
     assert second.target.external == (1.5, math.radians(90))
     program = krl(SET + "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0,E3 1}", DATA_LIST, robot=moved)
-    assert any("E3 is sent to 1 here, but the robot has 2" in n.message for n in program.notes)
+    assert any(
+        "E3 is sent to 1 here, but the robot has E1 and E2 alone" in n.message
+        for n in program.notes
+    )
     coupled = krl(
         SET + "$BASE=EK(MACHINE_DEF[2].ROOT,MACHINE_DEF[2].MECH_TYPE,table)\nLIN XP2",
         DATA_LIST,
@@ -371,6 +375,32 @@ def test_external_axes(krl, robot):
     ).moves[0]
     assert coupled.work_object.moved_by == "E2"
     assert coupled.work_object.user.position == (0.8, -0.1, 0.05)
+
+
+@pytest.mark.parametrize(("name", "number"), [("rail", 3), ("E3", None)])
+def test_an_external_axis_is_the_one_of_its_number(krl, robot, name, number):
+    slide = Joint(name, IDENTITY, (1, 0, 0), -1, 9, 1, 1, kind=JointKind.PRISMATIC)
+    moved = robot.with_external_axes([ExternalAxis(slide, ExternalRole.TRACK, number=number)])
+    body = SET + "PTP {A1 0,A2 -90,A3 90,A4 0,A5 0,A6 0,E1 9,E3 1500}\nPTP {A1 5}\nPTP $AXIS_ACT"
+    program = krl(body, DATA_LIST, robot=moved)
+    assert program.moves[0].target.external == (1.5,)
+    assert any(
+        "E1 is sent to 9 here, but the robot has E3 alone" in n.message for n in program.notes
+    )
+    text = "".join(find_vendor("kuka").write(program, moved).values())
+    assert "E3 1500" in text and "E1" not in text
+    home = program.moves[0]
+    shifted = replace(home, target=replace(home.target, external=(1.25,)))
+    changed = program.with_moves((shifted, *program.moves[1:]))
+    (file,) = find_vendor("kuka").patch(changed, moved).values()
+    assert "E1 9,E3 1250" in file.text
+
+
+def test_two_external_axes_of_one_number_are_refused(krl, robot):
+    slides = [Joint(n, IDENTITY, (1, 0, 0), -1, 9, 1, 1) for n in ("a", "b")]
+    axes = [ExternalAxis(slide, ExternalRole.TABLE, number=2) for slide in slides]
+    with pytest.raises(InputError, match=r"axis b is E2 of positions, as another one is"):
+        krl("PTP XHOME", DATA_LIST, robot=robot.with_external_axes(axes))
 
 
 def test_kinematics_functions(krl, robot):

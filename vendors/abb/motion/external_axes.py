@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ....core.door import spelt
 from ....core.errors import InputError, SourceError, Span
 from ....core.source.execution.transcript import Notes
+from ....core.source.text.axis_values import cell_axis
 from ..values.records import (
     ARM_AXES,
     AXIS_KINDS,
@@ -169,17 +169,6 @@ class ExternalAxes:
             span,
         )
         return ()
-
-
-def cell_axis(name: str, robot: Robot | None) -> str:
-    """What to write into a cell file for an external axis, to stand at the end of a message."""
-    arm = "vendor/robot" if robot is None else robot.name
-    return (
-        f'; to drive it, give a cell file ({spelt("cell")}): robot = "{arm}", '
-        f'[external_axis.{name}] with role = "table" or "track", kind = "revolute", axis, '
-        'range_deg, speed_deg_s and acceleration_deg_s2, or kind = "prismatic", axis, range_mm, '
-        "speed_mm_s and acceleration_mm_s2; pose if it is not at the world's origin"
-    )
 
 
 def _those(kinds: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from ....core.program.tool import Load, Tool, WorkObject
 from ....core.program.zone import FINE, Zone
 from ....core.source.execution.scopes import alike
 from ....core.source.execution.transcript import Notes
-from ....core.source.text.axis_values import arm_values
+from ....core.source.text.axis_values import arm_values, cell_axis
 from ....core.spatial.pose import IDENTITY, Pose, Quaternion
 from ..syntax.tree import Expression, Name
 from ..values.evaluator import Evaluator
@@ -48,7 +48,7 @@ from ..values.types import (
     Value,
 )
 from .configuration import AbbConfiguration
-from .external_axes import ExternalAxes, cell_axis, tables
+from .external_axes import ExternalAxes, tables
 from .settings import SettingsInForce
 
 if TYPE_CHECKING:

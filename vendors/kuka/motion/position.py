@@ -18,7 +18,7 @@ from ....core.robot.joint import JointKind
 from ....core.source.text.axis_values import axis_values
 from ....core.spatial.pose import Pose
 from ..values.frames import frame_of
-from ..values.types import AXIS_FIELDS, EXTERNAL_FIELDS
+from ..values.types import AXIS_FIELDS, EXTERNAL_FIELDS, external_fields
 from ..values.values import Placement, Struct, Unknown, Value
 from .configuration import label
 
@@ -39,6 +39,7 @@ class Position:
 
     def __init__(self, robot: Robot | None, start: JointTarget | None = None) -> None:
         self._robot = robot
+        self._names = external_fields(robot)
         self._commanded = PresentPosition(robot, start, label)
         self._last: Struct | None = None
         self._place: Struct | None = None
@@ -147,15 +148,13 @@ class Position:
 
     def external(self, index: int) -> Value | None:
         """The value that an external axis (from 0) was last sent to; None if to none yet."""
-        return None if self._last is None else self._last.fields.get(EXTERNAL_FIELDS[index])
+        return None if self._last is None else self._last.fields.get(self._names[index])
 
     def _external_fields(self, q: Sequence[float] | FloatArray) -> dict[str, Value]:
         assert self._robot is not None
         values = [float(v) for v in q[self._robot.arm_size :]]
         fields: dict[str, Value] = {}
-        for name, axis, value in zip(
-            EXTERNAL_FIELDS, self._robot.external_axes, values, strict=False
-        ):
+        for name, axis, value in zip(self._names, self._robot.external_axes, values, strict=False):
             linear = axis.joint.kind is JointKind.PRISMATIC
             fields[name] = value * 1000 if linear else math.degrees(value)
         return fields

@@ -14,11 +14,11 @@ from ....core.errors import InputError, LeftOpenError, SourceError, Span
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
-from ....core.source.text.axis_values import arm_values
+from ....core.source.text.axis_values import arm_values, cell_axis
 from ....core.source.text.quick import quick
 from ..values.frames import pose_of
 from ..values.provenance import Sources
-from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS
+from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS, external_fields
 from ..values.values import Placement, Struct, Unknown, Value, find_unknown, left_open, shown
 from .configuration import KukaConfiguration
 from .position import Position
@@ -64,6 +64,7 @@ class Targets:
         self, robot: Robot | None, position: Position, note: Callable[[str, str, Span], None]
     ) -> None:
         self._axes = None if robot is None else robot.external_axes
+        self._names = external_fields(robot)
         self._robot = robot
         coupled = () if robot is None else robot.coupled_ranges
         self._kept = [one for one in coupled if one.fixed]
@@ -157,22 +158,24 @@ class Targets:
         if _EXTERNAL_NAMES.isdisjoint(fields):
             return (), {}, False
         given: dict[int, float] = {}
-        for k, name in enumerate(EXTERNAL_FIELDS):
+        for name in EXTERNAL_FIELDS:
             value = fields.get(name)
-            if value is not None:
-                given[k] = _number(name, value, span)
-        count = 0 if self._axes is None else len(self._axes)
-        for k, number in given.items():
-            if k >= count and number != 0:
-                self._no_axis(k, number, span)
-        last = max((k for k in given if k < count), default=-1)
+            if value is None:
+                continue
+            number = _number(name, value, span)
+            if name in self._names:
+                given[self._names.index(name)] = number
+            elif number != 0:
+                self._no_axis(name.upper(), number, span)
+        last = max(given, default=-1)
         kept = any(k not in given for k in range(last + 1))
         for k in range(last + 1):
             if k not in given:
                 present = self._position.external(k)
                 if not isinstance(present, int | float):
                     raise SourceError(
-                        f"the target leaves out E{k + 1}, and where that axis stands is not known",
+                        f"the target leaves out {self._names[k].upper()}, and where that axis "
+                        "stands is not known",
                         span,
                     )
                 given[k] = float(present)
@@ -180,10 +183,10 @@ class Targets:
             given[k] / 1000 if axis.joint.kind is JointKind.PRISMATIC else math.radians(given[k])
             for k, axis in zip(range(last + 1), self._axes or (), strict=False)
         ]
-        outside: dict[str, Value] = {EXTERNAL_FIELDS[k]: given[k] for k in range(last + 1)}
+        outside: dict[str, Value] = {self._names[k]: given[k] for k in range(last + 1)}
         return tuple(converted), outside, kept
 
-    def _no_axis(self, k: int, number: float, span: Span) -> None:
+    def _no_axis(self, name: str, number: float, span: Span) -> None:
         """An axis that the robot does not have.
 
         Raises:
@@ -191,15 +194,17 @@ class Targets:
         """
         if self._axes is None:
             raise SourceError(
-                f"external axis E{k + 1} is sent to {number:g}, and the text does not say whether "
+                f"external axis {name} is sent to {number:g}, and the text does not say whether "
                 "that is mm or degrees: name the robot",
                 span,
             )
+        has = "no external axes"
+        if self._names:
+            has = f"{' and '.join(known.upper() for known in self._names)} alone"
         self._note(
-            f"E{k + 1}",
-            f"external axis E{k + 1} is sent to {number:g} here, but the robot has "
-            f"{len(self._axes) or 'no'} external axes: the arm is driven without it; describe the "
-            "axis in a cell file, [external_axis.…], and name that",
+            name,
+            f"external axis {name} is sent to {number:g} here, but the robot has {has}: the arm "
+            f"is driven without it{cell_axis(name, self._robot)}",
             span,
         )
 

@@ -18,7 +18,8 @@ from ....core.source.patch.uses import Use, UseKind
 from ....core.source.text.numerals import shortest
 from ..motion.configuration import KukaConfiguration
 from ..values.angles import written_angles
-from ..write.formatting import EXTERNAL_AXES, MM
+from ..values.types import EXTERNAL_FIELDS, external_fields
+from ..write.formatting import MM
 from ..write.numbers import number
 from ..write.speeds import zone_settings
 from .places import Places
@@ -96,12 +97,14 @@ class KrlLiterals:
             yield Component("APO", not _same(a, b), _scaled(a, b, unit))
 
     def _external(self, old: Sequence[float], new: Sequence[float]) -> Iterator[Component]:
-        for k in range(EXTERNAL_AXES):
+        axes = self._robot.external_axes
+        names = external_fields(self._robot)
+        for name in EXTERNAL_FIELDS:
+            k = names.index(name) if name in names else len(axes)
             a = old[k] if k < len(old) else 0.0
             b = new[k] if k < len(new) else a
-            axes = self._robot.external_axes
             linear = k < len(axes) and axes[k].joint.kind is JointKind.PRISMATIC
-            yield _length(f"E{k + 1}", a, b) if linear else _angle(f"E{k + 1}", a, b)
+            yield _length(name.upper(), a, b) if linear else _angle(name.upper(), a, b)
 
 
 def literals_of(use: Use) -> dict[str, frozenset[Span]]:

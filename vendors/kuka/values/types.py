@@ -7,13 +7,40 @@ the inline forms' FDAT, PDAT, LDAT).
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 
+from ....core.errors import InputError
+from ....core.robot.model import Robot
 from .values import Array, Choice, Real, Struct, Unknown, Value, Whole, leaf_of, shown
 
 FRAME_FIELDS = ("x", "y", "z", "a", "b", "c")
 AXIS_FIELDS = ("a1", "a2", "a3", "a4", "a5", "a6")
 EXTERNAL_FIELDS = ("e1", "e2", "e3", "e4", "e5", "e6")
+_E = re.compile(r"E([1-6])", re.IGNORECASE)
+
+
+def external_fields(robot: Robot | None) -> tuple[str, ...]:
+    """The components of positions that a robot's external axes have, in their order: by the axis's
+    number, or a name as ``E3``; else the one behind that of the axis before.
+
+    Raises:
+        InputError: two are the same, or there is none of the number.
+    """
+    found: list[str] = []
+    place = 0
+    for axis in () if robot is None else robot.external_axes:
+        called = _E.fullmatch(axis.name)
+        place = axis.number or (int(called[1]) if called else place + 1)
+        name = f"e{place}"
+        if name in found or place > len(EXTERNAL_FIELDS):
+            raise InputError(
+                f"external axis {axis.name} is {name.upper()} of positions, "
+                + ("as another one is" if name in found else "of which KRL has six")
+                + ": give it another number"
+            )
+        found.append(name)
+    return tuple(found)
 
 
 class KrlTypeError(Exception):

@@ -17,6 +17,7 @@ from ....core.source.text.axis_values import axis_values
 from ....core.spatial.pose import Pose, Vector3
 from ..motion.configuration import KukaConfiguration
 from ..values.angles import written_angles
+from ..values.types import external_fields
 from .numbers import number
 
 ARM_AXES = 6
@@ -91,8 +92,8 @@ def _external(values: Sequence[float], robot: Robot) -> list[str]:
         )
     linear = JointKind.PRISMATIC
     return [
-        f"E{k} {number(value / MM if axis.joint.kind is linear else degrees(value))}"
-        for k, (value, axis) in enumerate(zip(values, axes, strict=False), 1)
+        f"{name.upper()} {number(value / MM if axis.joint.kind is linear else degrees(value))}"
+        for name, value, axis in zip(external_fields(robot), values, axes, strict=False)
     ]
 
 
