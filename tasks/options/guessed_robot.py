@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.door import spelt
-from ...core.errors import FlybyError, Note
+from ...core.errors import EntryError, FlybyError, InputError, Note
+from ...core.program.entry_point import ALL
 from ..catalogue import registry
 from ..fitting import said_to_fit
 from ..read import SourceOptions, backup_in, read_undriven, read_with, surrounding
@@ -76,7 +77,7 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
     program: Program | None = None
     try:
         vendor = registry().reader_of(path)
-        program = read_undriven(source, options)
+        program, options = _undriven(source, options)
     except FlybyError:
         if not path.is_file():
             return None
@@ -94,8 +95,30 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
     fit = places.taken_by(vendor, arms)
     if not fit:
         return None
+    if program is not None and not assumed:
+        # Those go first that reach as well what hangs on unknown frames, as it is taken for.
+        fit = TakenPlaces.of(program, assumed=True).taken_by(vendor, fit) or fit
     arm = _first_that_drives(source, options, vendor, fit, len(program.moves) if program else 0)
     return arm, f"{said_to_fit(fit, places.count)}{assumed}"
+
+
+def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, SourceOptions]:
+    """A program for no robot, and how it is read; of one that drives nothing as it begins, the
+    routine that drives most."""
+    try:
+        program = read_undriven(source, options)
+    except EntryError:
+        program = None
+    if options.entry is not None and program is None:
+        raise InputError(f"{source} has no such entry")
+    if program is not None and (program.moves or options.entry is not None):
+        return program, options
+    routines = read_undriven(source, replace(options, entry=ALL)).entries
+    moving = [routine for routine in routines if routine.moves and not routine.parameters]
+    if not moving:
+        raise InputError(f"{source} drives nothing")
+    options = replace(options, entry=max(moving, key=lambda routine: routine.moves).name)
+    return read_undriven(source, options), options
 
 
 def _first_that_drives(

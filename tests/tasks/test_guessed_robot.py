@@ -76,3 +76,17 @@ def test_who_names_a_robot_is_heard(tmp_path: Path) -> None:
     file = rapid(tmp_path, at(600, 0, 600))
     options = SourceOptions(robot="abb/irb120-3-058")
     assert with_robot(file, options) == (options, ())
+
+
+def test_a_program_that_begins_nowhere_is_judged_by_the_routine_that_drives_most(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "a.mod"
+    near, far = at(300, 0, 400), [at(1900, 50 * k, 900) for k in range(3)]
+    routines = "".join(
+        f"PROC {name}()\n{body}\nENDPROC\n"
+        for name, body in (("main", ""), ("rNear", near), ("rFar", "\n".join(far)))
+    )
+    file.write_text(f"MODULE M\n{routines}ENDMODULE\n", "utf-8")
+    robot, said = taken(file)
+    assert robot is not None and "can take the 3 places" in said

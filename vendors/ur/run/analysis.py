@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from ....core.source.execution.steps import PLACE, Exit, Step
 from ....core.source.text.lexer import words
+from ..motion.jogs import PARAMETERS as JOGS
 from ..motion.kinematics import KINEMATICS
 from ..motion.settings import CALLS as SETTING
 from ..syntax import tree
@@ -30,6 +31,8 @@ _EXITS = {"break": Exit.LOOP, "continue": Exit.PASS, "halt": Exit.PROGRAM}
 SENT = words("servoj servoc servol speedj speedl")
 """What a computer sends moves the robot by them."""
 _MOVING = MOVES | SENT
+_TIME = 2
+"""Arguments before the time of a jog."""
 
 
 class ScriptTree:
@@ -80,9 +83,10 @@ class ScriptTree:
         called = {name for e in expressions for name in _called(e)}
         foreign = {name for name in called if name not in self._functions}
         names = frozenset[str]().union(*map(self.reads, expressions))
+        jogs = any(_is_jog(call) for e in expressions for call in calls_written(e))
         return Step(
-            moves=not foreign.isdisjoint(self._moves),
-            sent=not foreign.isdisjoint(SENT - self._moves),
+            moves=jogs or not foreign.isdisjoint(self._moves),
+            sent=not jogs and not foreign.isdisjoint(SENT - self._moves),
             reads=names if inner else frozenset(),
             writes=frozenset(_written(statement, expressions)),
             sets=frozenset(foreign) & SETTING,
@@ -134,6 +138,12 @@ class ScriptTree:
                 met |= called
                 todo += sorted(called)
                 yield body
+
+
+def _is_jog(call: tree.Call) -> bool:
+    """Whether a call drives for a time that is said, see `motion.jogs`."""
+    timed = len(call.arguments) > _TIME or any(a.name == "t" for a in call.arguments)
+    return call.name in JOGS and timed
 
 
 def _called(expression: tree.Expression) -> Iterator[str]:
