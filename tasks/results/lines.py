@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from ...core.errors import Span
@@ -37,7 +39,7 @@ class LineReport:
         span: of it; None where a move has no line, and is one by itself.
         kind: ``MoveJ``, ``MoveL`` or ``MoveC``; ``wait`` or ``device`` of a line that only waits.
         target: where it goes, in words, or how long it waits; ``several`` if it is another one
-            each time.
+            each time, ``P[1] to P[3]`` of items of one array.
         times: how often it runs.
         moves: their numbers, from 1; of a line that only waits, those that it stands behind.
         time: s of motion of all of them.
@@ -139,7 +141,7 @@ def _line(line: _Line) -> LineReport:
     return LineReport(
         span=line.span,
         kind=kind,
-        target=told.pop() if len(told) == 1 else "several",
+        target=told.pop() if len(told) == 1 else _items_of_one(told) or "several",
         times=len(line.moves or line.waits),
         moves=tuple(numbers),
         time=sum(move.time for move in line.moves),
@@ -147,6 +149,20 @@ def _line(line: _Line) -> LineReport:
         settling=sum(move.settling for move in line.moves),
         limits=shares_of(spent),
     )
+
+
+_ITEM = re.compile(r"([^\W\d][\w$.]*)([\[{])(\d+)([\]}])")
+"""``XP[3]`` of KRL and URScript, ``pPick{3}`` of RAPID."""
+
+
+def _items_of_one(names: Iterable[str]) -> str:
+    """The first and the last item, where all are of one array; empty if not."""
+    items = [_ITEM.fullmatch(name) for name in names]
+    if not all(items) or len({(item[1], item[2]) for item in items if item}) != 1:
+        return ""
+    numbers = sorted(int(item[3]) for item in items if item)
+    name, begins, _, ends = next(item for item in items if item).groups()
+    return f"{name}{begins}{numbers[0]}{ends} to {name}{begins}{numbers[-1]}{ends}"
 
 
 def line_row(line: LineReport, place: str, whole: float) -> tuple[str, ...]:

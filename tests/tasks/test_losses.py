@@ -100,3 +100,14 @@ def test_devices_are_no_waits_of_the_program(tmp_path: Path) -> None:
     causes = {cause.name: cause.time for cause in flyby.emulate(program).causes}
     assert "waits of the program" not in causes
     assert causes["devices"] == pytest.approx(3.0)
+
+
+def test_a_line_that_goes_to_items_of_an_array_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "a.src"
+    points = "\n".join(f"P[{i}]={{X 1500,Y {200 * i},Z 900,A 0,B 90,C 0}}" for i in (1, 2, 3))
+    path.write_text(
+        "DEF a()\nDECL E6POS P[3]\nDECL INT i\nBAS(#INITMOV,0)\n"
+        f"{points}\nFOR i=1 TO 3\nPTP P[i]\nENDFOR\nEND\n"
+    )
+    (line,) = flyby.emulate(flyby.read(path, robot="kuka/kr210-r2700-2")).lines
+    assert line.target in ("P[1] to P[3]", "P[2] to P[3]")  # to the first it may be taken to go

@@ -396,6 +396,12 @@ def test_an_external_axis_is_the_one_of_its_number(krl, robot, name, number):
     assert "E1 9,E3 1250" in file.text
 
 
+def test_where_an_axis_stands_that_the_robot_lacks_counts_for_nothing(krl, robot):
+    body = SET + "PTP XHOME\nhome=XHOME\nhome.E2=$AXIS_ACT.E2\nPTP home"
+    program = krl(body, DATA_LIST + "DECL E6AXIS home\n", robot=robot)
+    assert [m.target.external for m in program.moves] == [(), ()]
+
+
 def test_two_external_axes_of_one_number_are_refused(krl, robot):
     slides = [Joint(n, IDENTITY, (1, 0, 0), -1, 9, 1, 1) for n in ("a", "b")]
     axes = [ExternalAxis(slide, ExternalRole.TABLE, number=2) for slide in slides]

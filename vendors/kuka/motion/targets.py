@@ -139,6 +139,8 @@ class Targets:
             value = fields.get(name)
             if value is None:
                 continue
+            if name not in self._names and self._axes is not None and find_unknown(value):
+                continue  # $AXIS_ACT.E2 of a robot that has no such axis
             number = _number(name, value, span)
             if number != int(number):
                 raise SourceError(f"{name.upper()} is a whole number, not {number:g}", span)
@@ -162,6 +164,8 @@ class Targets:
             value = fields.get(name)
             if value is None:
                 continue
+            if name not in self._names and self._axes is not None and find_unknown(value):
+                continue  # $AXIS_ACT.E2 of a robot that has no such axis
             number = _number(name, value, span)
             if name in self._names:
                 given[self._names.index(name)] = number
