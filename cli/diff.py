@@ -11,6 +11,7 @@ import typer
 
 from ..core.errors import FlybyError, OptionError
 from ..tasks.diff.diff import diff_with
+from ..tasks.diff.git_states import beside_others
 from ..tasks.files.source_places import place_json
 from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions
@@ -93,7 +94,8 @@ def _for_git(paths: Sequence[str], source: SourceOptions) -> None:
         print_rich("added" if old == _NOTHING else "removed")
         return
     try:
-        _tell(diff_with(old, new, source), markdown=False)
+        with beside_others(name, old, new) as (before, after):
+            _tell(diff_with(before, after, source), markdown=False)
     except FlybyError as error:
         print_rich(f"not compared: {error}")
 

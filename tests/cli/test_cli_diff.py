@@ -77,6 +77,23 @@ def test_one_path_is_listed_a_move_a_line(flyby: Flyby, both: tuple[Path, Path])
     assert len(lines) == 3
 
 
+def test_gits_states_have_what_lies_beside_the_file(flyby: Flyby, tmp_path: Path) -> None:
+    """Git has the state before in a folder of its own: a ``.src`` without its ``.dat``."""
+    folder, blob = tmp_path / "tree", tmp_path / "git-blob-1"
+    folder.mkdir()
+    blob.mkdir()
+    for name in ("seam.src", "seam.dat"):
+        shutil.copy(Path("examples") / name, folder / name)
+    text = (folder / "seam.src").read_text("utf-8")
+    (blob / "seam.src").write_text(text.replace("corner[side] C_DIS", "corner[side]"), "utf-8")
+    old, new = blob / "seam.src", folder / "seam.src"
+    words = (new, old, "a1", "100644", new, "a2", "100644")
+    result = flyby("diff", "--robot", "kuka/kr16-2", *words)
+    assert result.exit_code == 0, result.output
+    assert "not compared" not in result.stdout and "seam, move" in result.stdout
+    assert sorted(one.name for one in folder.iterdir()) == ["seam.dat", "seam.src"]
+
+
 @pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
 def test_git_calls_it(both: tuple[Path, Path], tmp_path: Path) -> None:
     folder = tmp_path / "repository"
