@@ -21,13 +21,11 @@ from ..program.move import Move, MoveJ
 from ..program.program import Program
 from ..program.speed import Speed
 from .emulation import EmulatedProgram, Party
+from .kept_times import KeptTimes
 from .losses import LossesOfPart
+from .overrides import OVERRIDE, SHARE, accelerates_by
 from .time_search import TimeSearch, leading_axis, rounded, rounded_down
 
-_TOLD = 0.05
-"""Share by which a move may be slower before that is reported."""
-_SHORT = 0.02
-"""s: a difference of times that is not told."""
 _STILL = 1e-6
 """m of TCP path below which a move merely turns the tool."""
 _BINDS = 0.99
@@ -123,6 +121,7 @@ class Pacer:
         self._bound(i, stated, {**self._dialect.most, "tcp_acceleration": most})
         if k is not None:
             self._keep_time(i, k, speed, words, stated)
+            self._keep_share(i, speed, words, stated)
             self._tell_line(i, k, speed, words)
         return Speed(**self._alone(i, k, stated, words))
 
@@ -214,6 +213,16 @@ class Pacer:
         if turning and "duration" in words.speeds:
             stated["duration"] = rounded(float(self._old.peaks.duration[k]))
 
+    def _keep_share(self, i: int, speed: Speed, words: MoveWords, stated: dict[str, Any]) -> None:
+        """For a share of the joints' acceleration that is said as one of all accelerations: that
+        of the TCP, which the other controller may not have held, is reduced with it."""
+        share = speed.joint_acceleration_fraction
+        if share == 1.0 or accelerates_by(words) != OVERRIDE or "tcp_acceleration" in stated:
+            return
+        share *= speed.acceleration_override
+        stated[OVERRIDE] = max(self._dialect.least_acceleration_share, self._search.stepped(share))
+        self._sought.setdefault(i, OVERRIDE)
+
     def _tell_line(self, i: int, k: int, speed: Speed, words: MoveWords) -> None:
         limit = speed.reorientation
         reached = float(self._old.peaks.turn[k])
@@ -244,10 +253,13 @@ class Pacer:
         robot = self._target.robot
         leading = leading_axis(robot, turned)
         share = _acceleration_share(self._old, speed, k)
-        if "joint_acceleration_fraction" in words.speeds:
+        by = accelerates_by(words)
+        if by == SHARE or (by == OVERRIDE and share < 1.0):
+            # Where the speed is sought, that is what meets the time: no share may be in its way.
+            kept = self._same_pace and getattr(speed, self._dialect.pace) is not None
+            share *= speed.acceleration_override if by == OVERRIDE else 1.0
             least = self._dialect.least_acceleration_share
-            share = max(least, self._search.stepped(share))
-            stated["joint_acceleration_fraction"] = share
+            stated[by] = share = max(least, self._search.stepped(share, up=not kept))
         if "joint_acceleration" in words.needs and not self._keeps(speed, "joint_acceleration"):
             limit = float(robot.limits.acceleration[leading])
             stated["joint_acceleration"] = rounded(share * limit)
@@ -286,52 +298,10 @@ class Pacer:
         share = float((self._old.peaks.joint[k] / old).max())
         return greatest * min(1.0, max(0.01, share))
 
-    # -------------------------------------------------------------------------- in time
-
-    def _in_time_together(self, moves: Sequence[int], spent: FloatArray) -> set[int]:
-        """The moves that are one with others and take no longer than before together.
-
-        Args:
-            moves: that are driven.
-            spent: s, on each.
-        """
-        sums: dict[int, FloatArray] = {}
-        for k, i in enumerate(moves):
-            if i in self._tied and i in self._sought and i in self._old.segment:
-                times = np.array([spent[k], self._old.peaks.duration[self._old.segment[i]]])
-                lead = self._tied[i][0]
-                sums[lead] = sums.get(lead, np.zeros(2)) + times
-        return {i for i in moves if i in self._tied and _kept(sums.get(self._tied[i][0]))}
-
-    def tell_slower(self, program: Program, path: Path) -> None:
-        """Losses of moves that the new robot cannot drive as fast; the path is the program's."""
-        spent = self._target.timing(program, path).settled_durations()
-        together = self._in_time_together(path.route.moves, spent)
-        for k, i in enumerate(path.route.moves):
-            if i not in self._old.segment:
-                continue
-            wanted = float(self._old.peaks.duration[self._old.segment[i]])
-            if i in together and abs(spent[k] - wanted) > max(_TOLD * wanted, _SHORT):
-                self._losses.at(
-                    i,
-                    f"takes {spent[k]:.3f} s instead of {wanted:.3f} s: one speed serves all that "
-                    "this line drives, which take as long as before together",
-                    "time",
-                    abs(float(spent[k]) - wanted),
-                )
-            elif spent[k] > wanted * (1 + _TOLD) and spent[k] > wanted + _SHORT:
-                self._losses.at(
-                    i,
-                    f"takes {spent[k]:.3f} s instead of {wanted:.3f} s: the limits of "
-                    f"{self._target.robot.name} hold it{self._held.get(i, '')}",
-                    "time",
-                    float(spent[k]) - wanted,
-                )
-
-
-def _kept(times: FloatArray | None) -> bool:
-    """Whether the new time is as long as the old one, or less."""
-    return times is not None and bool(times[0] <= times[1] * (1 + _TOLD))
+    def tell_times(self, program: Program, path: Path) -> None:
+        """Losses of moves that do not take as long as before; the path is the program's."""
+        told = KeptTimes(self._old, self._target, self._dialect, self._losses, self._held)
+        told.tell(program, path, self._sought, self._tied)
 
 
 def _said(speed: Speed, words: MoveWords) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from ..program.program import Program
 from ..program.speed import Speed
 from ..robot.model import Robot
 from .emulation import EmulatedProgram, Party
+from .overrides import OVERRIDE, accelerates_by
 
 _ROUNDS = 8
 _GROWTHS = 4
@@ -25,6 +26,8 @@ _MET = 2e-3
 """Share of a move's time by which it may miss what is wanted before another round is made."""
 _LATE = 0.05
 """Share by which a move may be slower before its acceleration grows."""
+_SHARES = ("joint_fraction", OVERRIDE)
+"""Numbers that are shares."""
 _SIGNIFICANT = 4
 """Digits of the numbers that are sought."""
 
@@ -112,8 +115,8 @@ class TimeSearch:
         speed = move.speed
         if not isinstance(move, MoveJ):
             return False
-        if self._accelerates_by == "joint_acceleration_fraction":
-            return speed.joint_acceleration_fraction < 1.0
+        if self._accelerates_by != "joint_acceleration":
+            return bool(getattr(speed, self._accelerates_by) < 1.0)
         most = self._most_acceleration
         return speed.joint_acceleration is not None and speed.joint_acceleration < most
 
@@ -125,8 +128,7 @@ class TimeSearch:
 
     @property
     def _accelerates_by(self) -> str:
-        share = "joint_acceleration_fraction"
-        return share if share in self._dialect.joint.speeds else "joint_acceleration"
+        return accelerates_by(self._dialect.joint) or "joint_acceleration"
 
     def _accelerated(self, program: Program, late: Mapping[int, float]) -> Program:
         """The program with moves accelerated by the square of the factor by which they are late."""
@@ -134,8 +136,8 @@ class TimeSearch:
         for i, factor in late.items():
             value = getattr(moves[i].speed, name) * 1.05 * factor**2
             most = self._most_acceleration
-            share = name == "joint_acceleration_fraction"
-            number = self.stepped(min(1.0, value)) if share else rounded(min(most, value))
+            share = name != "joint_acceleration"
+            number = self.stepped(min(1.0, value), up=True) if share else rounded(min(most, value))
             for k in self._tied.get(i, (i,)):
                 moves[k] = replace(moves[k], speed=_with(moves[k].speed, name, number))
         return program.with_moves(tuple(moves))
@@ -143,7 +145,7 @@ class TimeSearch:
     def _most(self, path: Path, i: int, k: int) -> float:
         """The greatest value of the number that is sought."""
         name = self._sought[i]
-        if name == "joint_fraction":
+        if name in _SHARES:
             return 1.0
         if name == "joint":
             turned = path.route.ends.q[k, 1] - path.route.ends.q[k, 0]
@@ -155,18 +157,18 @@ class TimeSearch:
         moves = list(program.moves)
         for i, value in zip(sought, map(float, values), strict=True):
             name = self._sought[i]
-            share = name == "joint_fraction"
-            number = self.stepped(value) if share else rounded(value)
+            number = self.stepped(value) if name in _SHARES else rounded(value)
             for k in self._tied.get(i, (i,)):
                 moves[k] = replace(moves[k], speed=_with(moves[k].speed, name, number))
         return program.with_moves(tuple(moves))
 
-    def stepped(self, share: float) -> float:
-        """A share as the language says it, at least one step."""
+    def stepped(self, share: float, up: bool = False) -> float:
+        """A share as the language says it, at least one step; ``up``: no less than it is."""
         step = self._dialect.share_step
         if step == 0.0:
             return share
-        return min(1.0, max(step, round(round(share / step) * step, 9)))
+        steps = math.ceil(share / step - 1e-6) if up else round(share / step)
+        return min(1.0, max(step, round(steps * step, 9)))
 
 
 def _sums(group: IntArray, values: FloatArray) -> FloatArray:

@@ -160,8 +160,8 @@ class _Translator:
         begin = self.source.start(drivable)
         route = self.source.route(drivable, begin)
         program = decided(drivable, route, losses)
-        if self.dialect is not None and "acceleration_override" not in self.dialect.joint.speeds:
-            program = without_override(program, self.source.model, losses)
+        if self.dialect is not None:
+            program = without_override(program, self.source.model, self.dialect, losses)
         if program is not drivable:
             route = self.source.route(program, begin)
         path = self.source.path(route, program)
@@ -187,7 +187,7 @@ class _Translator:
                 made, new_path = self._zoned(made, again, wanted, start)
                 made = pacer.again(made, new_path)
                 new_path = self.target.repaced(new_path, made)
-            pacer.tell_slower(made, new_path)
+            pacer.tell_times(made, new_path)
         self._tell_zones(new_path, wanted, losses)
         worded = self._worded(made)
         self._tell_structure(worded)

@@ -8,6 +8,7 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, find, settings
 from hypothesis import strategies as st
@@ -45,6 +46,8 @@ from ..strategies import (
     OfKind,
     Parts,
     Value,
+    allowed,
+    is_regular,
     loads,
     programs,
     speeds,
@@ -252,9 +255,26 @@ class Subject:
         """Programs that the language can say."""
         return programs(robot, self.vendor.label, self.parts(), kinds=self.kinds)
 
+    @cached_property
+    def usual_robot(self) -> Robot:
+        """One that the language drives."""
+        return self.vendor.robot(self.driven_robots()[0])
+
+    @cached_property
+    def stand(self) -> tuple[float, ...]:
+        """Joints of the usual robot away from limits and singular postures."""
+        robot = self.usual_robot
+        lower, upper = robot.limits.lower, robot.limits.upper
+        shares = np.random.default_rng(1)
+        for _ in range(1000):
+            q = allowed(robot, lower + shares.uniform(0.35, 0.65, robot.size) * (upper - lower))
+            if is_regular(robot, q) and ((lower < q) & (q < upper)).all():
+                return tuple(float(value) for value in q)
+        raise AssertionError(f"{robot.name}: no regular posture near the middle of its ranges")
+
     def sample(self) -> tuple[Robot, Sources]:
         """A robot and the sources of a short program, always the same."""
-        robot = self.vendor.robot(self.driven_robots()[0])
+        robot = self.usual_robot
         quiet = settings(PROGRAM_EXAMPLES, database=None, phases=[Phase.generate])
         found = find(
             self.programs(robot), lambda p: len(p.moves) > 2, settings=quiet, random=Random(1)

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,13 +20,18 @@ from ...core.arrays import FloatArray
 from ...core.errors import FlybyError
 from ...core.motion.emulator.controller import Controller
 from ...core.motion.emulator.run import Run
-from ...core.program.move import Move, MoveJ
+from ...core.program.move import Move, MoveJ, MoveL
 from ...core.program.program import Program
+from ...core.program.speed import Speed
+from ...core.program.target import PoseTarget
+from ...core.program.zone import FINE
 from ...core.registry import vendors
 from ...core.robot.model import Robot
+from ...core.translation.overrides import accelerates_by
 from ...core.translation.translate import Translation, translate
 from ...core.vendor import Vendor
 from ..observation import Observed
+from ..strategies import joint_target
 from .subject import Subject
 from .telling import text_of, told
 
@@ -35,6 +41,8 @@ SAME_PATH = 5e-5
 """m by which the TCP's paths may differ, corners included."""
 SAME_TIME = 0.03
 """Share by which times may differ."""
+_SHARE, _LINE = 0.2, 0.05
+"""Of acceleration, and m of lines that are too short to reach their speed with it."""
 _SHORT = 1e-5
 """s between samples; differences over less say nothing of speeds."""
 _OFTEN = 4
@@ -104,14 +112,35 @@ class TranslationChecks(Subject):
                 there = self._carried(own, other.with_robot(same_arm), same_arm)
                 self._carried(there, self.vendor, robot)
 
+    def test_reduced_accelerations_are_carried_or_told(self) -> None:
+        """Whether or not a golden text has them: other languages' programs do."""
+        self.need("reader", "writer")
+        if self.vendor.speaks is None:
+            pytest.skip(f"{self.name} does not say what its language has words for")
+        for source, target in self._pairs_with_shares():
+            robot = self.usual_robot
+            arm = self.driven_robots()[0]
+            arms = [replace(robot, name=f"{one.name}/{arm}") for one in (source, target)]
+            program = _with_share(source, arms[0], self.stand)
+            source, target = (v.with_robot(a) for v, a in zip((source, target), arms, strict=True))
+            run = _driven(source, arms[0], program)
+            self._carried(_Side(source, arms[0], program, run), target, arms[1], faster=False)
+
+    def _pairs_with_shares(self) -> Iterator[tuple[Vendor, Vendor]]:
+        """From another language that has shares of acceleration, and to another one."""
+        others = list(self.other_vendors())
+        yield from [(one, self.vendor) for one in others if _share(one) is not None][:1]
+        yield from [(self.vendor, one) for one in others if _share(self.vendor) is not None][:1]
+
     def other_vendors(self) -> Iterator[Vendor]:
         """The installed vendors with a language, but this one."""
         for other in vendors():
             if other.name != self.name and other.writer and other.reader and other.speaks:
                 yield other
 
-    def _carried(self, source: _Side, vendor: Vendor, robot: Robot) -> _Side:
-        """The program on the other side, after a comparison."""
+    def _carried(self, source: _Side, vendor: Vendor, robot: Robot, faster: bool = True) -> _Side:
+        """The program on the other side, after a comparison; ``faster``: whether it may be, where
+        the other controller or its settings held the robot."""
         what = f"translated from {source} into {vendor.name}"
         try:
             made = translate(source.program, (source.vendor, source.robot), (vendor, robot))
@@ -122,7 +151,7 @@ class TranslationChecks(Subject):
             look = "Dialect: what it says there are words for is used by translations"
             shown = "\n".join(map(repr, source.program.statements))
             raise AssertionError(told(f"{what}: {error}", written=shown, look=look)) from error
-        _compare(what, source, carried, made, text_of(sources))
+        _compare(what, source, carried, made, text_of(sources), faster)
         return carried
 
 
@@ -130,7 +159,38 @@ def _driven(vendor: Vendor, robot: Robot, program: Program) -> Run:
     return Controller(vendor, robot).run(program)
 
 
-def _compare(what: str, one: _Side, other: _Side, made: Translation, text: str) -> None:
+def _share(vendor: Vendor) -> str | None:
+    """The number by which a language has lines accelerated less."""
+    return None if vendor.speaks is None else accelerates_by(vendor.speaks.line)
+
+
+def _with_share(vendor: Vendor, robot: Robot, stand: tuple[float, ...]) -> Program:
+    """Joint moves and lines so short that accelerations decide on their times."""
+    spoken, share = vendor.speaks, _share(vendor)
+    assert spoken is not None and share is not None
+    tcp = min(1.0, spoken.fastest)
+    numbers: dict[str, Any] = {"tcp": tcp, spoken.pace: tcp, share: _SHARE}
+    line = Speed(**{name: numbers[name] for name in ("tcp", share)})
+    joint = Speed(**{name: numbers[name] for name in (spoken.pace, share)})
+    first, home = joint_target(robot, np.array(stand)), robot.flange_pose(np.array(stand))
+    turned = (np.clip(stand[0] + 0.3, None, robot.limits.upper[0]), *stand[1:])
+    external = first.external
+    x, y, z = home.position
+    nearer = 1 - _LINE / max(math.hypot(x, y), _LINE)  # to the base: farther may be out of reach
+    away = PoseTarget(replace(home, position=(nearer * x, nearer * y, z)), None, external)
+    moves = (
+        MoveJ(first, joint, FINE),
+        MoveJ(joint_target(robot, np.array(turned)), joint, FINE),
+        MoveJ(first, joint, FINE),
+        MoveL(away, line, FINE),
+        MoveL(PoseTarget(home, None, external), line, FINE),
+    )
+    return Program(moves, "shares")
+
+
+def _compare(
+    what: str, one: _Side, other: _Side, made: Translation, text: str, faster: bool
+) -> None:
     lost = [note.message for note in made.losses]
     ends = [side.ends for side in (one, other)]
     same = ends[0].shape == ends[1].shape and np.abs(ends[0] - ends[1]).max() < SAME_PLACE
@@ -148,12 +208,12 @@ def _compare(what: str, one: _Side, other: _Side, made: Translation, text: str) 
         lines=lost,
     )
     times = [side.run.duration for side in (one, other)]
-    # Faster it may be where the other controller or its settings held the robot.
-    as_long = times[1] < (1 + SAME_TIME) * times[0]
+    least = 0.0 if faster else (1 - SAME_TIME) * times[0]
+    as_long = least < times[1] < (1 + SAME_TIME) * times[0]
     assert as_long or _says(lost, "takes", "slower"), told(
         f"{what}, it takes {times[1]:.3f} s instead of {times[0]:.3f} s, and no loss says so",
         read=text,
-        look="speeds: pace, speeds and needs in Dialect, and their units",
+        look="speeds: pace, speeds, needs and share_step in Dialect, and their units",
         lines=lost,
     )
     programmed = np.array([_programmed(move) for move in one.seen.moves])

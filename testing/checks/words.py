@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -24,12 +23,11 @@ from ...core.program.speed import Speed
 from ...core.program.target import PoseTarget
 from ...core.program.tool import WORLD, Tool, WorkObject
 from ...core.program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind, kind_of, zone_word
-from ...core.robot.model import Robot
 from ...core.source.patch.edits import alike, reading_of
 from ...core.spatial.pose import Pose
 from ...core.spatial.rotation import euler_zyx, euler_zyz
 from ..said import words_of
-from ..strategies import allowed, is_regular, joint_target
+from ..strategies import joint_target
 from .golden import stated_speeds
 from .subject import Subject
 from .telling import line_of, text_of, told
@@ -76,8 +74,8 @@ class WordsChecks(Subject):
         self.need("reader", "writer")
         for word in self._said_by_moves(self.dialect):
             program = self._around(word.move)
-            sources = self.written(program, self._robot_of_words)
-            again = self.read_written(sources, self._robot_of_words)
+            sources = self.written(program, self.usual_robot)
+            again = self.read_written(sources, self.usual_robot)
             assert len(again.moves) == len(program.moves), told(
                 f"{self.name}: {word.name} comes back as {len(again.moves)} moves",
                 written=text_of(sources),
@@ -103,8 +101,8 @@ class WordsChecks(Subject):
                 if not outputs.takes(event, move):
                     continue
                 program = self._around(replace(move, events=(event,)))
-                sources = self.written(program, self._robot_of_words)
-                again = self.read_written(sources, self._robot_of_words)
+                sources = self.written(program, self.usual_robot)
+                again = self.read_written(sources, self.usual_robot)
                 read = [e for m in again.moves for e in m.events]
                 assert alike([event], read, 1e-6) and again.moves[1].events, told(
                     f"{self.name}: an event on the way does not come back",
@@ -136,8 +134,8 @@ class WordsChecks(Subject):
                 look="SignalWords.said and SignalWords.read",
             )
             program = self._around(self._plain(MoveL), Opaque(text))
-            sources = self.written(program, self._robot_of_words)
-            again = self.read_written(sources, self._robot_of_words)
+            sources = self.written(program, self.usual_robot)
+            again = self.read_written(sources, self.usual_robot)
             kept = [s.text for s in again.statements if isinstance(s, Opaque)]
             assert [signals.read(one) for one in kept] == [action], told(
                 f"{self.name}: a kept statement on signals does not come back",
@@ -150,18 +148,16 @@ class WordsChecks(Subject):
         self.need("reader", "writer")
         spoken = self.dialect
         program = self._around(self._plain(MoveL))
-        sources = self.written(program, self._robot_of_words)
+        sources = self.written(program, self.usual_robot)
         main = next(iter(sources))
         lines = sources[main].splitlines(keepends=True)
         motion = next(
-            s.statement
-            for s in self.read_written(sources, self._robot_of_words).moves
-            if s.statement
+            s.statement for s in self.read_written(sources, self.usual_robot).moves if s.statement
         )
         words = f"{spoken.comment}{lines[motion.line - 1].strip()}\n"
         lines.insert(motion.line - 1, words)
-        again = self.read_written({**sources, main: "".join(lines)}, self._robot_of_words)
-        self.check_same(self.read_written(sources, self._robot_of_words), again, sources)
+        again = self.read_written({**sources, main: "".join(lines)}, self.usual_robot)
+        self.check_same(self.read_written(sources, self.usual_robot), again, sources)
 
     def test_speeds_that_are_not_needed_may_be_left_out(self) -> None:
         """What must be stated, since the language's own default would be taken, is needed."""
@@ -170,8 +166,8 @@ class WordsChecks(Subject):
             words = words_of(self.dialect, kind)
             for name in sorted({"tcp", self.dialect.pace} & words.speeds - words.needs):
                 program = self._around(self._plain(kind))
-                sources = self.written(program, self._robot_of_words)
-                again = self.read_written(sources, self._robot_of_words)
+                sources = self.written(program, self.usual_robot)
+                again = self.read_written(sources, self.usual_robot)
                 (left,) = {getattr(Speed(), name)}
                 found = getattr(again.moves[1].speed, name)
                 assert alike(found, left), told(
@@ -206,22 +202,6 @@ class WordsChecks(Subject):
 
     # ------------------------------------------------------------------ programs
 
-    @cached_property
-    def _robot_of_words(self) -> Robot:
-        return self.vendor.robot(self.driven_robots()[0])
-
-    @cached_property
-    def _stand(self) -> tuple[float, ...]:
-        """Joints away from limits and singular postures."""
-        robot = self._robot_of_words
-        lower, upper = robot.limits.lower, robot.limits.upper
-        shares = np.random.default_rng(1)
-        for _ in range(1000):
-            q = allowed(robot, lower + shares.uniform(0.35, 0.65, robot.size) * (upper - lower))
-            if is_regular(robot, q) and ((lower < q) & (q < upper)).all():
-                return tuple(float(value) for value in q)
-        raise AssertionError(f"{robot.name}: no regular posture near the middle of its ranges")
-
     def _around(self, move: Move, *others: Statement) -> Program:
         """A program of a move to a stop, the move, other statements, and a stop."""
         first, last = self._plain(MoveJ), self._plain(MoveJ)
@@ -229,7 +209,7 @@ class WordsChecks(Subject):
 
     def _plain(self, kind: type[Move]) -> Move:
         """A stop with as few words as the language needs."""
-        robot, q = self._robot_of_words, np.array(self._stand)
+        robot, q = self.usual_robot, np.array(self.stand)
         needs = words_of(self.dialect, kind).needs
         speed = Speed(**{name: VALUES[name] for name in needs})
         if kind is MoveJ:

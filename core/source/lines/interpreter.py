@@ -9,11 +9,13 @@ from __future__ import annotations
 import math
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import PurePath
 from typing import NoReturn
 from weakref import proxy
 
 from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
 from ...program import move
+from ...program.entry_point import ALL, EntryPoint, listed
 from ...program.move import Wait
 from ...program.program import Program
 from ..execution.analysis import Analysis
@@ -71,22 +73,26 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
         program: the routines.
         grammar: of the language.
         options: entry, answers and limits; without an entry the lines before the first routine are
-            run, or the only routine that the first file has.
+            run if they drive, else the routine ``main``, else the first of the file that drives and
+            that no other calls. Of the entry ``all`` the routines are listed.
 
     Raises:
         SourceError: what it does cannot be followed; file, line and cause are named.
     """
-    name = (options.entry or "").lower()
-    if not name and not program.routines[""].statements:
-        name = program.own[0] if len(program.own) == 1 else ""
+    run = _Interpreter(program, grammar, options)
+    asked = options.entry
+    if asked == ALL and ALL not in program.routines:
+        return Program((), PurePath(program.file).stem, entries=run.entry_points(None))
+    name = run.first() if asked is None else asked.lower()
     body = program.routines.get(name)
-    where = Span(program.file, 1, 1, 0, 0)
-    if body is None:
-        known = [key for key in program.routines if key]
+    if body is None or (asked is not None and not name):
+        known = listed(run.entry_points(None))
         raise SourceError(
-            unknown_name("routine", options.entry or "", known, "choose another entry"), where
+            f"there is no routine '{asked}': choose as the entry one of {known}; all drives each "
+            "of them",
+            Span(program.file, 1, 1, 0, 0),
         )
-    return _Interpreter(program, grammar, options).run(body, options.entry or name or "main")
+    return run.run(body, asked or body.name or "main")
 
 
 class _Interpreter:
@@ -117,6 +123,38 @@ class _Interpreter:
 
     # ---------------------------------------------------------------------- the run
 
+    def first(self) -> str:
+        """The routine that is run where nobody says which."""
+        own, routines = self._program.own, self._program.routines
+        drive = [key for key in own if self._analysis.moves(routines[key])]
+        before = routines[""]
+        if not own or self._analysis.moves(before) or (before.statements and not drive):
+            return ""
+        if len(own) == 1 or "main" in own:
+            return "main" if "main" in own else own[0]
+        within = {key: self._analysis.blocks_in(routines[key]) for key in own}
+        calling = (
+            key
+            for key in drive
+            if not any(id(routines[key]) in within[one] for one in own if one != key)
+        )
+        first = next(calling, (drive or own)[0])
+        if len(drive) > 1:
+            message = (
+                f"it begins with {routines[first].name}, the first of {len(drive)} routines that "
+                "move the robot: name another as the entry, or all of them (all)"
+            )
+            self._out.notes.once("entry", message, Span(self._program.file, 1, 1, 0, 0))
+        return first
+
+    def entry_points(self, begun: Body | None) -> tuple[EntryPoint, ...]:
+        """The routines of the first file; ``begun`` is the one that was run."""
+        bodies = (self._program.routines[key] for key in self._program.own)
+        return tuple(
+            EntryPoint(body.name, (), self._analysis.move_count(body), body is begun)
+            for body in bodies
+        )
+
     def run(self, body: Body, name: str) -> Program:
         """Carry a routine out to its end."""
         with suppress(_Finished):
@@ -126,6 +164,7 @@ class _Interpreter:
             name,
             notes=(*self._out.notes.notes(), *self.course.notes()),
             questions=self.course.questions(),
+            entries=() if self._out.move_index else self.entry_points(body),
             calls=tuple(self._out.calls),
             cycle=self.course.cycle,
             sections=self.course.sections.found(self.course.cycle),

@@ -76,7 +76,8 @@ class LineProgram:
     Args:
         file: the name of the first.
         texts: of the files, by name.
-        routines: by lower-case name; the lines before the first named one are called "".
+        routines: by lower-case name; the lines before the first named one are called "", and need
+            not be there.
         points: points by file and `point_key`.
         data: what registers hold at first.
         own: keys of the routines of the first file that have names, in order.
@@ -88,6 +89,9 @@ class LineProgram:
     points: Mapping[tuple[str, str, int | None], NumberedPoint] = field(default_factory=dict)
     data: Initial = field(default_factory=dict)
     own: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "routines", {"": Body(), **self.routines})
 
     def text_of(self, span: Span) -> str:
         """The text that stands at a place."""
@@ -170,11 +174,12 @@ def read_lines(
     source = SourceText(unbroken(text), file)
     routines: dict[str, list[Statement]] = {"": []}
     points: dict[tuple[str, str, int | None], NumberedPoint] = {}
-    own, labels = routines[""], set[str]()
+    own, labels, names = routines[""], set[str](), {"": ""}
     for line, statement in _statements(source, grammar, name, lines):
         if isinstance(statement, Routine):
             if statement.name.lower() in routines:
                 raise SourceError(f"there are two routines {statement.name}", line.span)
+            names[statement.name.lower()] = statement.name
             own, labels = routines.setdefault(statement.name.lower(), []), set()
         elif isinstance(statement, NumberedPoint):
             key = file, *point_key(statement.datum)
@@ -186,7 +191,7 @@ def read_lines(
                 raise SourceError(f"there are two labels {statement.name}", line.span)
             labels |= {statement.name} if isinstance(statement, Label) else set()
             own.append(statement)
-    bodies = {key: Body(tuple(nested(statements))) for key, statements in routines.items()}
+    bodies = {key: Body(tuple(nested(said)), names[key]) for key, said in routines.items()}
     named = tuple(key for key in bodies if key)
     return LineProgram(file, {file: text}, bodies, points, own=named)
 

@@ -364,9 +364,14 @@ Statement = (
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """Statements in order."""
+    """Statements in order.
+
+    Args:
+        name: of a routine's, as it is declared.
+    """
 
     statements: tuple[Statement, ...] = ()
+    name: str = ""
 
     @cached_property
     def labels(self) -> Mapping[str, int]:

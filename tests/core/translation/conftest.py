@@ -87,7 +87,9 @@ class Pair:
         matrix = np.eye(4)
         turned = matrix_from_rotation_vector(np.array(turn, dtype=float))
         matrix[:3, :3] = np.diag([-1.0, 1.0, -1.0]) @ turned
-        matrix[:3, 3] = np.add(CENTRES[frozenset({self.old, self.new})], offset)
+        matrix[:3, 3] = np.add(
+            CENTRES.get(frozenset({self.old, self.new}), (0.9, -0.05, 0.3)), offset
+        )
         return Pose.from_matrix(matrix)
 
     def target(self, offset=(0.0, 0.0, 0.0), turn=(0.0, 0.0, 0.0), name=None) -> PoseTarget:

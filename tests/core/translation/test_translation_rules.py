@@ -530,6 +530,72 @@ def test_a_share_of_acceleration_grows_where_the_move_would_be_late(between) -> 
     assert spent < 1.06 * wanted
 
 
+def spoken(pair, joint, line, **others):
+    """The new side with a language that says these numbers of joint moves and of lines."""
+    vendor, robot = side(pair.new)
+    words = {"needs": frozenset(), "exclusive": frozenset()}
+    kinds = {
+        kind: replace(getattr(vendor.speaks, kind), speeds=frozenset(names), **words)
+        for kind, names in (("joint", joint), ("line", line), ("arc", line))
+    }
+    return replace(vendor, speaks=replace(vendor.speaks, **kinds, **others)), robot
+
+
+def short_lines(pair, **speed):
+    ends = ((0.0, 0.04, 0.0), (0.0, 0.0, 0.0)) * 2
+    return Program((pair.joint(), *(pair.line(end, tcp=0.8, **speed) for end in ends)))
+
+
+@pytest.mark.parametrize("share", ["acceleration_override", "joint_acceleration_fraction"])
+def test_a_share_of_acceleration_becomes_what_the_language_has(between, share) -> None:
+    pair = between("abb", "kuka")
+    program = short_lines(pair, joint_acceleration_fraction=0.1)
+    new = spoken(pair, ("joint_fraction", share), ("tcp", share))
+    made = translate(program, side(pair.old), new)
+    times = pair.run_old(program).duration, Controller(*new).run(made.program, made.start).duration
+    assert times[1] == pytest.approx(times[0], rel=0.03) or "takes" in messages(made)
+    assert all(getattr(move.speed, share) < 0.5 for move in made.program.moves[1:])
+
+
+def test_a_share_of_acceleration_without_words_is_told(between) -> None:
+    pair = between("abb", "kuka")
+    program = short_lines(pair, joint_acceleration_fraction=0.1)
+    made = translate(program, side(pair.old), spoken(pair, ("joint_fraction",), ("tcp",)))
+    assert len(made.losses) == 4
+    assert "a reduced acceleration (10%) has no words" in messages(made)
+    full = translate(short_lines(pair), side(pair.old), spoken(pair, ("joint_fraction",), ("tcp",)))
+    assert "has no words" not in messages(full)
+
+
+@pytest.mark.parametrize(
+    ("programmed", "weakness", "why"),
+    [
+        (0.2, 0.3, "its share of acceleration (0.2) is kept, and kuka/kr30-3 takes longer"),
+        (1.0, 0.03, "the limits of kuka/kr30-3 hold it"),
+    ],
+)
+def test_what_makes_a_move_longer_is_named(between, programmed, weakness, why) -> None:
+    pair, share = between("kuka", "kuka"), "joint_acceleration_fraction"
+    vendor, robot = spoken(pair, ("joint_fraction", share), ("tcp", share))
+    joints = (replace(one, acceleration=weakness * one.acceleration) for one in robot.joints)
+    weak = replace(robot, joints=tuple(joints))
+    program = short_lines(pair, joint_acceleration_fraction=programmed)
+    assert why in messages(translate(program, (vendor, robot), (vendor, weak)))
+
+
+def test_steps_of_shares_are_named_where_they_make_moves_longer(between) -> None:
+    pair, speeds = between("ur", "kuka"), ("joint_fraction", "joint_acceleration_fraction")
+    old, arm = side(pair.old)
+    ways = [pair.joint(end, joint=0.12 * 2.094) for end in (ASIDE, (0.0, 0.0, 0.0))]
+    program = Program((pair.joint(), *ways))
+    coarse, fine = (
+        translate(program, (old, arm), (spoken(pair, speeds, ("tcp",), share_step=step)[0], arm))
+        for step in (0.1, 0.0)
+    )
+    assert "shares of speed and acceleration are said in steps of 0.1" in messages(coarse)
+    assert not fine.losses
+
+
 def test_a_speed_of_turning_without_words_is_told_if_it_holds(between) -> None:
     pair = between("abb", "ur")
     for rate, told in ((0.1, True), (8.0, False)):

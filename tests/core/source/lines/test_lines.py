@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -89,9 +90,9 @@ class Small(Grammar):
         return Drive(line.span, Operand(datum.span, point=datum), place, place, build)
 
 
-def run(text: str) -> Program:
+def run(text: str, entry: str | None = None) -> Program:
     grammar = Small()
-    return run_lines(read_lines(text, "job", grammar, "small"), grammar, ReadOptions())
+    return run_lines(read_lines(text, "job", grammar, "small"), grammar, ReadOptions(entry))
 
 
 def waits(program: Program) -> list[float]:
@@ -132,6 +133,41 @@ def test_an_error_says_where(lines: str, said: str) -> None:
 
 def test_arguments_are_what_the_caller_gave() -> None:
     assert waits(run("R[1]=2\nCALL rest R[1]+1\nROUTINE rest\nWAIT A[1]*2\n")) == [6.0]
+
+
+GO = "V[1,1]=1\nV[1,2]=2\nGO V[1]\n"
+IN_ROUTINES = f"ROUTINE near\n{GO}ROUTINE Pick\nCALL near\n{GO}ROUTINE note\nR[1]=1\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "entry", "begun", "moves"),
+    [
+        (IN_ROUTINES, None, "Pick", 2),
+        (f"ROUTINE note\nR[1]=1\nROUTINE Near\n{GO}", None, "Near", 1),
+        ("R[1]=1\n" + IN_ROUTINES + "ROUTINE Main\nCALL Pick\n", None, "Main", 2),
+        (IN_ROUTINES + f"ROUTINE all\n{GO}", "all", "all", 1),
+        (GO + IN_ROUTINES, None, "main", 1),
+    ],
+)
+def test_a_program_begins_where_it_drives(text, entry, begun, moves) -> None:
+    program = run(text, entry)
+    assert (program.name, len(program.moves)) == (begun, moves)
+
+
+def test_routines_are_listed_and_told() -> None:
+    listed = run(IN_ROUTINES, "all")
+    assert [(e.name, e.moves) for e in listed.entries] == [("near", 1), ("Pick", 2), ("note", 0)]
+    assert "begins with Pick, the first of 2 routines" in str(run(IN_ROUTINES).notes)
+    with pytest.raises(SourceError, match=r"no routine 'pck'.*near .1 move., Pick"):
+        run(IN_ROUTINES, "pck")
+    alone = run(f"ROUTINE note\nR[1]=1\nROUTINE near\n{GO}", "note")
+    assert [(e.name, e.begun) for e in alone.entries] == [("note", True), ("near", False)]
+
+
+def test_a_program_needs_no_lines_before_its_routines() -> None:
+    read = read_lines(IN_ROUTINES, "p", Small(), "Small")
+    routines = {key: body for key, body in read.routines.items() if key}
+    assert len(run_lines(replace(read, routines=routines), Small(), ReadOptions()).moves) == 2
 
 
 def test_numbers_of_a_register_know_their_literals() -> None:
