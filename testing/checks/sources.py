@@ -68,7 +68,7 @@ class SourceChecks(Subject):
                     read=_shown(unsaid),
                     look="the origin of the part (`MoveOrigin`): every literal that it is made of",
                 )
-                varied |= claimed
+                varied |= {place for place in claimed if not _is_switched_off(program, place)}
                 effective |= changed
                 owned = [p for p in claimed if _origin(program, p).ownership is Ownership.OWNED]
                 moves = {index for index, _ in claimed}
@@ -348,6 +348,13 @@ def _origin(program: Program, place: Place) -> Origin:
 
 def _is_derived(program: Program, place: Place) -> bool:
     return _origin(program, place).ownership is Ownership.DERIVED
+
+
+def _is_switched_off(program: Program, place: Place) -> bool:
+    """Whether a part is a stop that one of several settings makes: the others do not count."""
+    index, part = place
+    stops = part == "zone" and isinstance(program.moves[index].zone, Fine)
+    return stops and len(_origin(program, place).numbers) > 1
 
 
 def _at(program: Program, span: Span) -> str:

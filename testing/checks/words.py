@@ -144,6 +144,24 @@ class WordsChecks(Subject):
                 look="statements",
             )
 
+    def test_kept_statements_come_back_as_they_are(self) -> None:
+        """Once each: what stands in a golden text, written and read."""
+        self.need("reader", "writer")
+        programs = map(self.read_golden, self.golden_texts)
+        said = [s for p in programs for s in p.statements if isinstance(s, Opaque)]
+        kept = list({one.text: replace(one, span=None) for one in said}.values())
+        if not kept:
+            pytest.skip(f"{self.name}: no golden text has a statement that is kept")
+        sources = self.written(self._around(self._plain(MoveJ), *kept), self.usual_robot)
+        again = self.read_written(sources, self.usual_robot)
+        read = [s for s in again.statements if isinstance(s, Opaque)]
+        assert read == kept, told(
+            f"{self.name}: kept statements do not come back as they are",
+            written=[one.text for one in kept],
+            read=f"{[one.text for one in read]}\nfrom {text_of(sources)}",
+            look="statements: what a line says that is kept",
+        )
+
     def test_comments_say_nothing(self) -> None:
         self.need("reader", "writer")
         spoken = self.dialect

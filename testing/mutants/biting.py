@@ -27,6 +27,7 @@ BITING: Mapping[str, str] = {
     "recordings log nothing": _RECORDED,
     "recordings log at another period": _RECORDED,
     "kept statements lost on reading": 'an output that is set, as a row kind = "Opaque"',
+    "kept statements doubled on reading": 'an output that is set, as a row kind = "Opaque"',
     "kept statements lost on writing": 'an output that is set, as a row kind = "Opaque", in a text '
     "that names its robot",
     "comments lost": "a kept statement (an output, a print) in a text that names its robot",

@@ -119,6 +119,12 @@ def _last_first(program: Program) -> Program:
     return program if a is None else with_statements(program, (*first, b, a))
 
 
+def _doubled(program: Program) -> Program:
+    """Each kept statement twice, as of a line that says two things."""
+    twice = (([s] * 2 if isinstance(s, Opaque) else [s]) for s in program.statements)
+    return with_statements(program, tuple(s for one in twice for s in one))
+
+
 def _without_start(program: Program) -> Program:
     """Without the move to where the program starts."""
     first = program.statements[0] if program.statements else None
@@ -213,6 +219,12 @@ MUTANTS = (
         in_writing(without(Opaque)),
         ("test_signals_are_said_and_understood", *AGAIN),
         knows_signals,
+    ),
+    Mutant(
+        "kept statements doubled on reading",
+        in_reading(_doubled),
+        ("test_kept_statements_come_back_as_they_are", *GOLDEN),
+        has("Opaque"),
     ),
     Mutant(
         "comments lost",

@@ -156,8 +156,20 @@ class Transcript:
         """A routine of the program is entered by the call at a place."""
         self.calls.append(Call(self.text_of(span), len(self._statements), span))
 
+    def stop(self) -> None:
+        """The robot stops at the last statement, which is kept."""
+        last = self._statements[-1]
+        if isinstance(last, Opaque):
+            self._statements[-1] = replace(last, stops=True)
+
     def keep(
-        self, span: Span, name: str, why: str, stops: bool = False, device: bool = False
+        self,
+        span: Span,
+        name: str,
+        why: str,
+        stops: bool = False,
+        device: bool = False,
+        said: str | None = None,
     ) -> bool:
         """Keep a statement as it stands, with one note per kind, at the first of them.
 
@@ -167,11 +179,12 @@ class Transcript:
             why: it is not carried out; empty for no note.
             stops: whether the robot stops at it.
             device: whether it is taken as a device's, which may take its time.
+            said: the statement, where more stands at its place.
 
         Returns:
             Whether the robot is driven at it by what a computer sends.
         """
-        text = self.text_of(span)
+        text = self.text_of(span) if said is None else said
         stream = self._course.stream(text, span)
         self.emit(Opaque(text, stops or stream is not None, span))
         if stream is not None:

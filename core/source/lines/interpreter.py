@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import NoReturn
 from weakref import proxy
@@ -66,6 +66,16 @@ class _Finished(Exception):
     pass
 
 
+@dataclass(slots=True)
+class _SaidLine:
+    """A line that is carried out: its statements so far, whether one drives, whether it is kept."""
+
+    span: Span | None = None
+    statements: set[int] = field(default_factory=set)
+    drives: bool = False
+    kept: bool = False
+
+
 def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> Program:
     """The program that a routine drives.
 
@@ -118,6 +128,7 @@ class _Interpreter:
         self._data = Data(program, grammar, self._values)
         self._computed: set[str] = set()
         self._driven: Span | None = None
+        self._line = _SaidLine()
         self._reads = Reads()
         self._loops: dict[int, Body] = {}
 
@@ -245,6 +256,7 @@ class _Interpreter:
 
     def _carry_out(self, statement: Statement) -> None:
         self.meter.statement(statement.span)
+        self._begin(statement)
         if isinstance(statement, Drive):
             try:
                 self._drive(statement)
@@ -274,7 +286,33 @@ class _Interpreter:
         elif isinstance(statement, Pause):
             self._pause(statement)
         elif isinstance(statement, Kept):
-            self._out.keep(statement.span, statement.name, statement.why, statement.stops)
+            self._keep(statement, statement.name, statement.why, statement.stops)
+
+    def _keep(
+        self, statement: Assign | Pause | Kept, name: str, why: str, stops: bool = False
+    ) -> None:
+        """Keep a statement; the line of several that do not say what each is alone, once."""
+        line, span = self._line, statement.span
+        if statement.said is None and line.drives:
+            raise SourceError(
+                "this line drives and says something else beside, which would be kept as the whole "
+                "line: the language has to give that a place of its own, or its text (said)",
+                span,
+            )
+        if statement.said is None and line.kept:
+            if stops:
+                self._out.stop()
+            return
+        self._out.keep(span, name, why, stops, said=statement.said)
+        line.kept = line.kept or statement.said is None
+
+    def _begin(self, statement: Statement) -> None:
+        """Know which statements are of the line that is carried out."""
+        line = self._line
+        if line.span != statement.span or id(statement) in line.statements:
+            line = self._line = _SaidLine(statement.span)
+        line.statements.add(id(statement))
+        line.drives = line.drives or isinstance(statement, Drive)
 
     def _if(self, statement: If) -> None:
         value = self._values.value(statement.condition)
@@ -326,7 +364,7 @@ class _Interpreter:
             if self._values.value(statement.condition) is False:
                 self.outputs.forget(self.outputs.asked_since(mark))
             why = "taken as satisfied at once: waiting takes no time here"
-        self._out.keep(statement.span, "a wait", why, stops=True)
+        self._keep(statement, "a wait", why, stops=True)
 
     def _assign(self, statement: Assign) -> None:
         value = self._values.value(statement.value)
@@ -344,7 +382,7 @@ class _Interpreter:
         else:
             self.outputs.write(name, None if isinstance(value, Unknown) else value)
         word = statement.target.word
-        self._out.keep(statement.span, word, "outputs do not move the robot")
+        self._keep(statement, word, "outputs do not move the robot")
 
     # ------------------------------------------------------------------------- moves
 

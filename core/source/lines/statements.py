@@ -146,11 +146,17 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class Assign:
-    """``R[1] = R[1] + 1``, ``DO[2] = ON``"""
+    """``R[1] = R[1] + 1``, ``DO[2] = ON``
+
+    Args:
+        said: of an output, the statement alone, where its line says several; None for the line,
+            which is kept once for all of them then.
+    """
 
     span: Span
     target: Datum
     value: Expression
+    said: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,11 +252,12 @@ class End:
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """The robot waits for a time, s, or until a condition holds."""
+    """The robot waits for a time, s, or until a condition holds; ``said``: as of `Assign`."""
 
     span: Span
     time: Expression | None = None
     condition: Expression | None = None
+    said: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,6 +269,7 @@ class Kept:
         why: it is not carried out.
         stops: whether the robot stops at it.
         signal: what it does with a signal, if that is known.
+        said: as of `Assign`.
     """
 
     span: Span
@@ -269,6 +277,7 @@ class Kept:
     why: str
     stops: bool = False
     signal: SignalAction | None = None
+    said: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import InputError, SourceError
-from flyby.core.program.move import Move, MoveJ, Wait
+from flyby.core.program.move import Move, MoveJ, Opaque, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget
-from flyby.core.source.lines.expressions import Datum, parse
+from flyby.core.source.lines.expressions import Datum, Number, Truth, parse
 from flyby.core.source.lines.files import with_called
 from flyby.core.source.lines.interpreter import run_lines
 from flyby.core.source.lines.program import Grammar, Said, read_lines
@@ -168,6 +168,33 @@ def test_a_program_needs_no_lines_before_its_routines() -> None:
     read = read_lines(IN_ROUTINES, "p", Small(), "Small")
     routines = {key: body for key, body in read.routines.items() if key}
     assert len(run_lines(replace(read, routines=routines), Small(), ReadOptions()).moves) == 2
+
+
+class Several(Small):
+    """``BOTH``, ``APART``, ``HALT`` and ``FLY V[1]``: lines of several statements."""
+
+    def statement(self, line: Line) -> Said:
+        def output(number: int, said: str | None = None) -> Assign:
+            datum = Datum(line.span, "DO", Number(line.span, float(number)))
+            return Assign(line.span, datum, Truth(line.span, True), said)
+
+        if line.text == "HALT":
+            return output(5), Pause(line.span, condition=Truth(line.span, True))
+        if line.text == "APART":
+            return output(5, "OUT 5"), output(6, "OUT 6")
+        if line.text == "FLY V[1]":
+            return self._go(line, line.start + 4), output(5)
+        return (output(5), output(6)) if line.text == "BOTH" else super().statement(line)
+
+
+def test_a_line_of_several_statements_is_kept_once() -> None:
+    lines = f"{GO}BOTH\nBOTH\nAPART\nHALT\n"
+    grammar = Several()
+    program = run_lines(read_lines(lines, "job", grammar, "small"), grammar, ReadOptions())
+    kept = [(s.text, s.stops) for s in program.statements if isinstance(s, Opaque)]
+    assert kept == [(one, one == "HALT") for one in ("BOTH", "BOTH", "OUT 5", "OUT 6", "HALT")]
+    with pytest.raises(SourceError, match=r"job:4:1: this line drives and says something else"):
+        run_lines(read_lines(f"{GO}FLY V[1]\n", "job", grammar, "small"), grammar, ReadOptions())
 
 
 def test_numbers_of_a_register_know_their_literals() -> None:
