@@ -32,7 +32,6 @@ from ...core.motion.model.blend import Blend
 from ...core.motion.model.elasticity import RIGID
 from ...core.motion.model.figures import Stage
 from ...core.motion.model.motion_model import MotionModel, first_change
-from ...core.motion.model.servo import IDEAL
 from ...core.motion.path.path import Path
 from ...core.motion.timing.timing import Timing
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
@@ -41,7 +40,7 @@ from ...core.program.target import JointTarget
 from ...core.robot.model import Robot
 from ...core.vendor import Vendor
 from ..fit.keys import with_value
-from .kinds import Topic
+from .kinds import DRAGGING, Topic
 from .plan import CandidateRun, Precision
 
 NOISE = 1e-4
@@ -58,8 +57,10 @@ SPREAD_BETA, SPREAD_WIDTH, SPREAD_SETTLING = 0.5, 0.02, 0.03
 SPREAD_SCALE, SPREAD_LEAD, SPREAD_NEARNESS, SPREAD_LEAST_TIME = 0.2, 2e-4, 2e-3, 2e-3
 """Standard deviations beforehand: of β, of widths and settling in s, of accelerations as a share,
 of leads in s², of how near axes are to be to stops in rad, of least times of zones in s."""
-REORIENTATION, FRICTION = 20.0, 1e-4
-"""rad/s² and rad that are looked at where a model has none."""
+REORIENTATION, FRICTION, DRAG = 20.0, 1e-4, -5e-4
+"""rad/s², rad and s that are looked at where a model has none."""
+SPREAD_DRAG, SPREAD_DELAY = 5e-4, 0.05
+"""s, standard deviations beforehand of drag, and of how much later it shows."""
 _STEP = 0.02
 """Of a difference quotient, in standard deviations."""
 
@@ -97,6 +98,7 @@ def studied(model: MotionModel, robot: Robot, about: Sequence[Topic] = ()) -> Mo
     if Topic.TURNS in about and model.reorientation_acceleration is None:
         model = replace(model, reorientation_acceleration=REORIENTATION)
     rubs = (FRICTION,) * robot.arm_size if Topic.REVERSALS in about else ()
+    drags = (DRAG,) * min(DRAGGING, robot.arm_size) if Topic.DRAG in about else ()
     widths = tuple(width for width in model.smoothing if width > 0) or SMOOTHING
     settling = SETTLED * sum(widths) if model.settling is None else model.settling
     return replace(
@@ -108,7 +110,7 @@ def studied(model: MotionModel, robot: Robot, about: Sequence[Topic] = ()) -> Mo
         settling=settling,
         joint_acceleration_scale=tuple(map(model.acceleration_scale, range(robot.arm_size))),
         elasticity=RIGID,
-        servo=replace(IDEAL, friction=rubs, rise=model.servo.rise, fade=model.servo.fade),
+        servo=replace(model.servo, friction=rubs, drag=drags),
     )
 
 
@@ -155,6 +157,12 @@ def figures_of(model: MotionModel, about: Sequence[Topic] = ()) -> list[StudiedF
             found.append(StudiedFigure(f"servo.friction_rad[{joint}]", rubs, FRICTION))
         for key, within in (("rise_rad", model.servo.rise), ("fade_s", model.servo.fade)):
             found.append(StudiedFigure(f"servo.friction_{key}", within, 0.5 * within))
+    if Topic.DRAG in about:
+        speed, delay = model.servo.drag_speed, model.servo.drag_delay
+        for joint, drags in enumerate(model.servo.drag):
+            found.append(StudiedFigure(f"servo.drag_s[{joint}]", drags, SPREAD_DRAG))
+        found.append(StudiedFigure("servo.drag_speed_radps", speed, 0.5 * speed))
+        found.append(StudiedFigure("servo.drag_delay_s", delay, SPREAD_DELAY))
     return found
 
 

@@ -36,6 +36,8 @@ class Kind(StrEnum):
     """Lines of several lengths and directions, as fast as the language lets them go."""
     REVERSALS = "reversals"
     """One joint after the other slowly to and fro."""
+    CRUISES = "cruises"
+    """One of the first three joints after the other at several even speeds, at rest behind each."""
 
     @property
     def short(self) -> str:
@@ -72,11 +74,14 @@ _SHORT = {
     Kind.CORNER_TURNS: "cornerturn",
     Kind.RESTS: "rest",
     Kind.REVERSALS: "reversal",
+    Kind.CRUISES: "cruise",
 }
 _STOPPING = (
     *(Kind.LINE_STOPS, Kind.JOINT_STOPS, Kind.SINGLE_AXES),
-    *(Kind.POINT_TURNS, Kind.RESTS, Kind.REVERSALS),
+    *(Kind.POINT_TURNS, Kind.RESTS, Kind.REVERSALS, Kind.CRUISES),
 )
+DRAGGING = 3
+"""Joints, the first ones, that carry the arm, and whose drag runs are about."""
 KINDS = tuple(Kind)[: list(Kind).index(Kind.SINGLE_AXES) + 1]
 """Those that a user may ask for; the others belong to a topic."""
 
@@ -89,3 +94,4 @@ class Topic(StrEnum):
     POSTURES = "postures"
     REVERSALS = "reversals"
     BLENDS = "blends"
+    DRAG = "drag"

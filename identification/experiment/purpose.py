@@ -35,6 +35,8 @@ SLOWER, HALF = 0.8, 0.5
 """Shares of accelerations that runs tell from the emulated ones."""
 RUB, BACKLASH = 1e-4, 1e4
 """rad that friction sets joints off by, and s that no run takes."""
+DRAG = 1e-3
+"""s of their velocity that fast joints may be behind by."""
 BULGE = 1.0
 """β₀ by which corners may run otherwise."""
 _EVERY, _SAME = 2e-3, 1e-6
@@ -52,6 +54,7 @@ QUESTIONS = {
     Topic.POSTURES: "How do accelerations change with the posture, by inertia and by weight?",
     Topic.REVERSALS: "What do friction and backlash make of a joint that turns back?",
     Topic.BLENDS: "How do corners between such moves run, and how fast are they passed?",
+    Topic.DRAG: "How far are joints behind where they run fast, and how long after a stop?",
 }
 DECISIONS = {
     Topic.SHORT_LEGS: """Legs of other lengths that take the same time with the same zone show that
@@ -73,6 +76,12 @@ DECISIONS = {
     Topic.BLENDS: """The rule with which the emulation runs nearest to the log, and takes its time,
         is the controller's. It is one for all only if it serves all angles, zones and speeds; of
         corners between two speeds it shows which of them counts.""",
+    Topic.DRAG: """The last joint, which turns slowly while the others rest, tells the time of each
+        sample. A joint that is behind by the same time at all speeds lags: elasticity.lag_s. What
+        is hardly there at the slow speed, and by that time at the fast one, is drag: servo.drag_s,
+        servo.drag_speed_radps. How long after the end of the motion it is gone is
+        servo.drag_delay_s. Drag that differs one way and the other is weight or cold grease, for
+        which the model has no figure.""",
 }
 
 
@@ -112,6 +121,7 @@ _STARTS = {
     "limit.tcp_acceleration": 5.0,
     "limit.centripetal": 1.0,
     "limit.joint_acceleration_scale": 1.0,
+    "servo.drag_s": -0.5 * DRAG,
 }
 """Where a fit may begin whose figure nobody states, but for zero."""
 
@@ -138,6 +148,10 @@ def _figures(
         case Topic.REVERSALS:
             yield from (f"servo.friction_rad[{joint}]" for joint in study.joints)
             yield from ("servo.friction_rise_rad", "servo.friction_fade_s")
+        case Topic.DRAG:
+            yield from (f"servo.drag_s[{joint}]" for joint in study.joints)
+            yield from (f"elasticity.lag_s[{joint}]" for joint in study.joints)
+            yield from ("servo.drag_speed_radps", "servo.drag_delay_s")
         case Topic.BLENDS:
             yield from _blend_figures(candidate.kind, model)
 
@@ -222,6 +236,14 @@ def _alternatives(
             ):
                 rubs = Servo(joints, rise=model.servo.rise, fade=fade)
                 yield f"{1e3 * RUB:.3g} mrad of {what}", replace(model, servo=rubs)
+        case Topic.DRAG:
+            behind, servo = (-DRAG,) * controller.robot.arm_size, model.servo
+            by = f"joints are behind by {1e3 * DRAG:.3g} ms of their velocity"
+            for how, other in (
+                (f"where they run fast, shown {servo.drag_delay:.3g} s later", servo),
+                ("where they run fast, at once", replace(servo, drag_delay=0.0)),
+            ):
+                yield f"{by} {how}", replace(model, servo=replace(other, drag=behind))
         case Topic.BLENDS:
             yield from _other_blends(candidate.kind, model)
 

@@ -26,7 +26,7 @@ from ...core.robot.work_chain import work_chain
 from .candidates import LONGEST_LEG, ZONE_ROOM, PostureFamily
 from .checking import check
 from .family import APPROACH, Made, joint_target
-from .kinds import Kind, Topic
+from .kinds import DRAGGING, Kind, Topic
 from .plan import RADII, CandidateRun, PlannedCorner, Skipped, Study
 from .postures import ROOM
 from .star import Leg, Spoke, Star
@@ -58,6 +58,13 @@ RATES = (0.01, 0.04)
 """rad/s of a joint that turns back."""
 STOPPED = 0.3
 """s that a stop takes, by estimate."""
+CRUISE_RATES = (0.15, 0.4, 1.2)
+"""rad/s of these: below the speed from which they drag, about it, and above."""
+CRUISE = 0.6
+"""s that each lasts: drag shows some 0.15 s after the joint has come up to speed."""
+RESTED, REST_RATE = 0.5, 0.02
+"""s that such a joint rests behind a stop, while the last joint turns at so many rad/s: what shows
+late is seen to its end, and the log's time goes on."""
 BLENDS = (
     *(Kind.LINES, Kind.JOINTS, Kind.ARCS),
     *(Kind.LINES_AND_JOINTS, Kind.LINES_AND_ARCS, Kind.JOINTS_AND_ARCS),
@@ -315,15 +322,31 @@ def _several(joints: Iterable[int], count: int) -> Iterator[tuple[int, ...]]:
 
 
 def _alone(family: PostureFamily, joint: int, rate: float) -> Speed:
+    return family.words.joint_alone(joint, rate, _lever(family, joint))
+
+
+def _lever(family: PostureFamily, joint: int) -> float:
+    """m, of the TCP about a joint."""
     robot, tool = family.controller.robot, family.plan.tool
     J = jacobians(work_chain(robot, tool, WORLD), family.site.q[None])[0]
-    return family.words.joint_alone(joint, rate, float(np.linalg.norm(J[:3, joint])))
+    return float(np.linalg.norm(J[:3, joint]))
 
 
 def _rate(said: Speed) -> str:
     """Of a joint that moves alone, as it is programmed."""
     turn = said.reorientation
     return speed_shown(said) if turn is None else f"{math.degrees(turn):.3g}°/s"
+
+
+def _driven_rate(family: PostureFamily, joint: int, said: Speed) -> float:
+    """rad/s of a joint that moves alone; languages round what they say, or take no less."""
+    most = float(family.controller.robot.limits.velocity[joint])
+    if said.joint is not None:
+        return min(most, said.joint)
+    if said.tcp is None:
+        return most * said.joint_fraction
+    by_tool = math.inf if said.reorientation is None else said.reorientation
+    return min(most, by_tool, said.tcp / max(_lever(family, joint), 1e-9))
 
 
 def _reversal_run(family: PostureFamily, joints: Sequence[tuple[int, Speed]], number: int) -> Made:
@@ -341,6 +364,44 @@ def _reversal_run(family: PostureFamily, joints: Sequence[tuple[int, Speed]], nu
     run = family.candidate(name, Kind.REVERSALS, None, (), begin, moves)
     conditions = [(f"joint {robot.axis_names[j]}", _rate(v)) for j, v in joints]
     return _made(family, Topic.REVERSALS, run, conditions, *(joint for joint, _ in joints))
+
+
+# Drag
+
+
+def _cruises(family: PostureFamily) -> Iterator[Made]:
+    """Joints that carry the arm, to and fro at several speeds, as many in a run as there is time
+    for."""
+    each = len(CRUISE_RATES) * 2 * (CRUISE + RESTED + 2.0 * STOPPED)
+    count = max(1, int(family.plan.longest / each))
+    joints = range(min(DRAGGING, family.controller.robot.arm_size - 1))
+    for number, some in enumerate(_several(joints, count)):
+        yield _first(family, Kind.CRUISES, partial(_cruise_run, family, some, number))
+
+
+def _cruise_run(family: PostureFamily, joints: Sequence[int], number: int, scale: float) -> Made:
+    robot, tool, q = family.controller.robot, family.plan.tool, family.site.q
+    last = robot.arm_size - 1
+    slow = _alone(family, last, REST_RATE)
+    aside = RESTED * _driven_rate(family, last, slow)
+    there, moves = q.copy(), []
+    conditions: list[tuple[str, ...]] = []
+    for joint in joints:
+        above = robot.limits.upper[joint] - q[joint] >= q[joint] - robot.limits.lower[joint]
+        for wanted in CRUISE_RATES:
+            rate = min(wanted, 0.9 * float(robot.limits.velocity[joint]))
+            said = _alone(family, joint, rate)
+            conditions.append((f"joint {robot.axis_names[joint]}", _rate(said)))
+            way = (1.0 if above else -1.0) * scale * rate * CRUISE
+            for share in (1.0, 0.0):
+                there[joint] = q[joint] + round(share * way, 5)
+                moves.append(MoveJ(joint_target(there), said, FINE, tool))
+                there[last] = q[last] + round(share * aside, 5)
+                moves.append(MoveJ(joint_target(there), slow, FINE, tool))
+    begin = MoveJ(joint_target(q), family.gentle(np.array([family.star().slope(0.0)])), FINE, tool)
+    name = family.name(Kind.CRUISES, None, number)
+    run = family.candidate(name, Kind.CRUISES, None, (), begin, moves)
+    return _made(family, Topic.DRAG, run, conditions, *joints)
 
 
 # Blends
@@ -368,4 +429,5 @@ _RUNS: dict[Topic, Callable[[PostureFamily], Iterator[Made]]] = {
     Topic.POSTURES: _rests,
     Topic.REVERSALS: _reversals,
     Topic.BLENDS: _blends,
+    Topic.DRAG: _cruises,
 }

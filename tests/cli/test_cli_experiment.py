@@ -162,7 +162,7 @@ def test_what_is_no_use_is_refused(
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ("speed", "--about speed: short-legs, turns, postures, reversals, blends"),
+        ("speed", "--about speed: short-legs, turns, postures, reversals, blends, drag"),
         (" , ", "--about: name at least one of short-legs"),
     ],
 )

@@ -57,6 +57,12 @@ def runs_of(made: Experiment, kind: Kind):
     return found
 
 
+def spells(moving):
+    """Where each stretch of samples begins, and how many they are."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], moving, [False]]).astype(int)))
+    return edges[::2], np.diff(edges)[::2]
+
+
 @each_robot
 def test_every_topic_has_runs_that_keep_limits_and_say_what_they_are_for(name: str) -> None:
     made = designed(name)
@@ -132,6 +138,20 @@ def test_the_moves_are_what_the_topic_asks_for(name: str) -> None:
         assert moved.sum(axis=1).max() == 1
         assert set(np.flatnonzero(moved.any(axis=0))) == set(run.candidate.study.joints)
         assert np.abs(run.run.trajectory.dq).max() < 0.06
+    cruises = runs_of(made, Kind.CRUISES)
+    assert {joint for run in cruises for joint in run.candidate.study.joints} == {0, 1, 2}
+    for run in cruises:
+        t, dq = run.run.trajectory.t, run.run.trajectory.dq
+        assert (np.abs(dq) > 1e-3).sum(axis=1).max() == 1
+        for joint in run.candidate.study.joints:
+            begins, _ = spells(np.abs(dq[:, joint]) > 1e-3)
+            tops = np.maximum.reduceat(dq[:, joint], begins)
+            for rate in (0.15, 0.4, 1.2):  # KRL says whole percents.
+                assert np.abs(tops - rate).min() < 0.04 * rate
+            assert np.minimum.reduceat(dq[:, joint], begins).min() == pytest.approx(-1.2, abs=0.01)
+        # What shows 0.14 s late has time to go while the last joint turns.
+        _, lengths = spells(np.abs(dq[:, -1]) > 1e-3)
+        assert lengths.min() * (t[1] - t[0]) > 0.4
     kinds = {run.candidate.kind for run in made.runs if run.topic is Topic.BLENDS}
     assert (Kind.CONTOURS in kinds) == (name.startswith("kuka"))
     assert {Kind.LINES, Kind.JOINTS, Kind.JOINTS_AND_ARCS, Kind.UNEQUAL_JOINTS} <= kinds
