@@ -151,7 +151,7 @@ class Robot:
         ends = [base, *([*base, *self.arm_stages(index)] for index in self.along)]
         return np.concatenate([poses(assemble(s), q)[1] for s in [*ends, self.flange_stages()]])
 
-    @property
+    @cached_property
     def arm_size(self) -> int:
         """n, the number of the arm's own joints."""
         return len(self.joints)
@@ -167,7 +167,7 @@ class Robot:
         """The link that carries the flange: behind joint k is link k, counted from one."""
         return self.along[-1] + 1
 
-    @property
+    @cached_property
     def size(self) -> int:
         """N, the number of values of a configuration."""
         return len(self.joints) + len(self.external_axes)

@@ -218,7 +218,7 @@ class Controller:
                 check_path(self.robot, program, path, (start or program.start) is not None)
             except MotionError as error:
                 raise _located(error, program) from None
-            return replace(path, notes=(*notes, *path.notes))
+            return replace(path, notes=(*notes, *path.notes)) if notes else path
         raise MotionError("the blends of this program overlap beyond remedy")
 
     def stamp(self, program: Program, path: Path) -> Timing:

@@ -198,6 +198,8 @@ def pull_corners(
 
 def _check_regular(path: Path) -> None:
     """Refuse a path with singular samples, where q has no derivative by the pose."""
+    if path.segments.joint_moves_alone:
+        return
     pieces, solved = path.pieces, path.route.solved
     for stretch in stretches(path.route, path.layout, pieces):
         if stretch.joint_space:

@@ -219,6 +219,9 @@ class SampledStretch:
 def stretches(route: Route, layout: Layout, pieces: Pieces) -> Iterator[SampledStretch]:
     """The stretches of a path, in its order."""
     first = pieces.first_sample
+    if pieces.joint_space.all() and all(chain is route.chains[0] for chain in route.chains):
+        yield SampledStretch(route.chains[0], True, 0, 0, int(first[-1]))
+        return
     begin = 0
     count = len(pieces.segment)
     for p in range(1, count + 1):

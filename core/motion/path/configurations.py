@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -93,6 +94,10 @@ class ConfigurationFinder:
 
     def rest(self) -> FloatArray:
         """All axes at zero, or at the limit nearest to it."""
+        return self._rest.copy()
+
+    @cached_property
+    def _rest(self) -> FloatArray:
         limits = self._robot.limits
         return np.asarray(np.clip(np.zeros(self._robot.size), limits.lower, limits.upper))
 
@@ -103,14 +108,15 @@ class ConfigurationFinder:
             InputError: it has another number of joints than the arm, or more external axes than
                 the robot.
         """
-        if len(target.joints) != self._robot.arm_size:
+        arm = self._robot.arm_size
+        if len(target.joints) != arm:
             raise InputError(
                 f"a joint target has {len(target.joints)} values, {self._robot.name} has "
-                f"{self._robot.arm_size} joints"
+                f"{arm} joints"
             )
-        q = before.copy()
-        q[: self._robot.arm_size] = target.joints
-        return self.external(target.external, q)
+        q = self.external(target.external, before)
+        q[:arm] = target.joints
+        return q
 
     def external(self, values: Sequence[float], before: FloatArray) -> FloatArray:
         """A configuration with external axes set to the values that are given.

@@ -126,7 +126,7 @@ class RouteFinder:
         for stage in self._stages(moves, skipped):
             q = self._drive(moves, stage, q, legs)
         route = self._route(program, legs, move_ends_of(program), notes)
-        return replace(route, left_out=tuple(sorted(skipped)))
+        return replace(route, left_out=tuple(sorted(skipped))) if skipped else route
 
     def _start(self, program: Program, start: JointTarget | None, notes: list[Note]) -> FloatArray:
         start = start or program.start

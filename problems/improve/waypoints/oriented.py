@@ -66,6 +66,9 @@ class OrientedPoint(JointPoint):
         J = self._turning(self._joints(values))[1]
         return np.asarray(N - M @ np.linalg.lstsq(J @ M, J @ N, rcond=None)[0])
 
+    def _pulled(self, by_joint: FloatArray, values: FloatArray) -> FloatArray:
+        return np.asarray(by_joint @ self.slope(values))
+
     @cached_property
     def _orientation(self) -> FloatArray:
         return self._placed(self.given)[0]

@@ -74,6 +74,11 @@ class ProgramPart(ABC):
         """From the program's parameters to the variables."""
 
 
+def _total(rows: FloatArray, moves: tuple[int, ...]) -> FloatArray:
+    """The sum of some moves' rows."""
+    return np.asarray(rows[moves[0]] if len(moves) == 1 else rows[list(moves)].sum(axis=0))
+
+
 class ViaPoint(ProgramPart):
     """The target of a via point."""
 
@@ -135,8 +140,12 @@ class JointPoint(ViaPoint):
         return np.eye(self.size)
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
-        by_joint = made.joints[np.ix_(self.moves, self.axes)].sum(axis=0)
-        return np.asarray(by_joint @ self.slope(values))
+        by_joint = np.asarray(_total(made.joints, self.moves)[list(self.axes)])
+        return self._pulled(by_joint, values)
+
+    def _pulled(self, by_joint: FloatArray, values: FloatArray) -> FloatArray:
+        """From the gradient (len(axes),) by the joints to that by the variables."""
+        return by_joint
 
 
 @dataclass(frozen=True)
@@ -208,10 +217,9 @@ class ZonePart(ProgramPart):
         external axes, and angle change with the variable."""
 
     def gradient(self, made: ProgramGradient, values: FloatArray) -> FloatArray:
-        rows = list(self.moves)
         sizes = made.zone, made.zone_reorientation, made.zone_external, made.zone_angle
         pairs = zip(sizes, self.rates(), strict=True)
-        found = [float(size[rows].sum()) * rate for size, rate in pairs if rate != 0.0]
+        found = [float(_total(size, self.moves)) * rate for size, rate in pairs if rate != 0.0]
         return np.array([sum(found)])
 
 
