@@ -15,10 +15,11 @@ import numpy as np
 from ...arrays import FloatArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
 from ...program.assumed_places import assumed_places
-from ...program.move import Move, MoveC, MoveJ
+from ...program.move import Move, MoveC, MoveJ, MoveL
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
 from ...program.tool import WORLD, Tool, WorkObject
+from ...program.zone import FINE
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
@@ -89,6 +90,7 @@ class RouteFinder:
         self._follower = PathFollower(robot, self._targets)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
         self._last: tuple[Tool, WorkObject, Chain] | None = None
+        self._known: tuple[Program, Route] | None = None
 
     def find(
         self, program: Program, start: JointTarget | None, skipped: Collection[int] = ()
@@ -108,6 +110,12 @@ class RouteFinder:
         moves = program.moves
         if not moves:
             raise no_move(program)
+        plain = start is None and not skipped
+        if plain and self._known is not None:
+            again = _with_other_numbers(*self._known, program)
+            if again is not None:
+                self._known = program, again
+                return again
         before: Move | None = None
         for i, move in enumerate(moves):
             if move.open or move.unsettled:
@@ -126,6 +134,8 @@ class RouteFinder:
         for stage in self._stages(moves, skipped):
             q = self._drive(moves, stage, q, legs)
         route = self._route(program, legs, move_ends_of(program), notes)
+        if plain:
+            self._known = program, route
         return replace(route, left_out=tuple(sorted(skipped))) if skipped else route
 
     def _start(self, program: Program, start: JointTarget | None, notes: list[Note]) -> FloatArray:
@@ -339,6 +349,76 @@ class RouteFinder:
             self._targets.prescribed,
             tuple(replace(n, span=n.span or _span(program, n.move)) for n in notes),
         )
+
+
+def _with_other_numbers(before: Program, route: Route, program: Program) -> Route | None:
+    """The route of a program that differs from another one in joint values and zones alone.
+
+    Args:
+        before, route: the other program and its route.
+        program: the program.
+
+    Returns:
+        None where more has changed, or may have.
+    """
+    statements = len(before.statements) == len(program.statements)
+    if not statements or before.start is not program.start or route.notes or route.left_out:
+        return None
+    if len(route.moves) != len(before.moves):
+        return None
+    kind, zones, changed = route.ends.kind, list(route.zones), []
+    k = -1
+    for old, new in zip(before.statements, program.statements, strict=True):
+        k += isinstance(old, MoveJ | MoveL | MoveC)
+        if old is new:
+            continue
+        if not (isinstance(old, MoveJ) and isinstance(new, MoveJ) and _alike(old, new)):
+            return None
+        if (kind[k : k + 2] != JOINT_SEGMENT).any():
+            return None
+        target, external = new.target, route.robot.size - route.robot.arm_size
+        if not isinstance(target, JointTarget) or len(target.external) != external:
+            return None
+        if new.zone is not old.zone and k < len(zones):
+            # At a stop something else may make it one.
+            if zones[k] is not old.zone or old.zone == FINE:
+                return None
+            zones[k] = new.zone
+        changed.append((k, target))
+    ends = _moved(route, changed)
+    return None if ends is None else replace(route, ends=ends, zones=tuple(zones))
+
+
+def _alike(old: MoveJ, new: MoveJ) -> bool:
+    """Whether both are joint moves to as many joint values, and differ in nothing but these and
+    their zones."""
+    one, two = old.target, new.target
+    if not (isinstance(one, JointTarget) and isinstance(two, JointTarget)):
+        return False
+    if len(one.joints) != len(two.joints) or len(one.external) != len(two.external):
+        return False
+    same = old.tool is new.tool and old.work_object is new.work_object and old.speed is new.speed
+    return same and not (new.open or new.unsettled)
+
+
+def _moved(route: Route, changed: Sequence[tuple[int, JointTarget]]) -> Ends | None:
+    """The ends with other joint values where segments end; None where one goes nowhere then."""
+    ends, count = route.ends, len(route.moves)
+    q, prescribed = ends.q.copy(), ends.prescribed.copy()
+    position, rotation = ends.position.copy(), ends.rotation.copy()
+    for k, target in changed:
+        q[k, 1] = (*target.joints, *target.external)
+        for segment, end in ((k, 1), (k + 1, 0)):
+            if segment < count:
+                q[segment, end] = q[k, 1]
+                prescribed[segment, end] = q[k, 1, route.prescribed]
+                at = rotation[segment, end], position[segment, end]
+                pose(route.chains[segment], q[segment, end], *at)
+    moved = [k for k, _ in changed]
+    near = [k for k in {*moved, *(k + 1 for k in moved)} if k < count]
+    if (np.linalg.norm(q[near, 1] - q[near, 0], axis=1) <= _NOWHERE).any():
+        return None
+    return replace(ends, q=q, prescribed=prescribed, position=position, rotation=rotation)
 
 
 def _left_open(move: Move, index: int) -> MotionError:

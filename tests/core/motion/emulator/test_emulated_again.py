@@ -15,8 +15,10 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.motion.model.rules import Overlap
+from flyby.core.program.move import MoveJ
 from flyby.core.program.program import Program
-from flyby.core.program.zone import Radius
+from flyby.core.program.target import JointTarget
+from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.testing.strategies import programs
 
@@ -38,20 +40,25 @@ def emulated(controller: Controller, program: Program) -> list[FloatArray]:
     return [*found, made.joints, made.position, made.turn, made.zone, *speeds]
 
 
-def with_smaller_zones(program: Program, share: float) -> Program:
-    """The same moves at the same speeds."""
-    return program.with_moves(
-        tuple(
-            replace(move, zone=move.zone.resized(share * move.zone.tcp))
-            if isinstance(move.zone, Radius) and move.zone.tcp > 0.0
-            else move
-            for move in program.moves
-        )
-    )
+def changed(program: Program, share: float) -> Program:
+    """The same moves at the same speeds, with smaller zones or none, and other joint values."""
+    moves = []
+    for move in program.moves:
+        if isinstance(move.zone, Radius) and move.zone.tcp > 0.0:
+            move = replace(move, zone=move.zone.resized(share * move.zone.tcp) if share else FINE)
+        if isinstance(move.target, JointTarget):
+            joints = tuple(0.98 * value for value in move.target.joints)
+            move = replace(move, target=replace(move.target, joints=joints))
+        moves.append(move)
+    return program.with_moves(tuple(moves))
 
 
-@settings(max_examples=25, deadline=None)
-@given(programs(ROBOT), st.sampled_from([Overlap.HALF, Overlap.SHRINK]), st.floats(0.3, 1.0))
+@settings(max_examples=40, deadline=None)
+@given(
+    st.one_of(programs(ROBOT), programs(ROBOT, kinds=(MoveJ,))),
+    st.sampled_from([Overlap.HALF, Overlap.SHRINK]),
+    st.floats(0.3, 1.0),
+)
 def test_what_was_driven_before_does_not_matter(
     program: Program, overlap: Overlap, share: float
 ) -> None:
@@ -62,8 +69,9 @@ def test_what_was_driven_before_does_not_matter(
     except FlybyError:
         # What cannot be driven, or has no derivatives, is not compared.
         return
-    with contextlib.suppress(FlybyError):
-        emulated(used, with_smaller_zones(program, share))
+    for other_zones in (share, 0.0):
+        with contextlib.suppress(FlybyError):
+            emulated(used, changed(program, other_zones))
     for _ in range(2):
         for one, other in zip(emulated(used, program), wanted, strict=True):
             np.testing.assert_array_equal(one, other)
