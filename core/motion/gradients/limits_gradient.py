@@ -169,6 +169,7 @@ def pull_path_limits(
     b_bar[:, :, made.limited] = bar.b[:, :, :plain]
     bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
     made.stretches.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
+    made.approach.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
     pull_between(
         states,
         made.rows.spacing,
