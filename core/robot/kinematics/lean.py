@@ -32,7 +32,7 @@ def lean(function: Any) -> Any:
     """Compiles a function that makes no array: where it would, numba refuses to compile it."""
     if numba.version_info.short != LINKED:
         return njit(**_PLAIN, cache=True)(function)
-    from .linked import LeanCompiler, LeanDispatcher
+    from .compiling.linked import LeanCompiler, LeanDispatcher
 
     options = {**_PLAIN, "nopython": True}
     made = LeanDispatcher(function, targetoptions=options, pipeline_class=LeanCompiler)
@@ -60,7 +60,7 @@ def inlined(function: Any) -> Any:
 def _inner(function: Any, **options: Any) -> Any:
     if numba.version_info.short != LINKED:
         return register_jitable(error_model="numpy", fastmath={"contract"}, _nrt=False)(function)
-    from .linked import LinkedCompiler
+    from .compiling.linked import LinkedCompiler
 
     # With the flags of `lean`: numba compiles anew for each caller that has others.
     options = {**_PLAIN, **options, "no_cpython_wrapper": False}

@@ -16,7 +16,10 @@ from numba import types
 from numba.core import errors
 from numba.core.compiler_machinery import register_pass
 from numba.core.typed_passes import BaseTypeInference
+from numba.core.typing import signature
 
+EXTREMES = (max, min)
+"""What is lowered as a comparison, where numba compiles a function of Python for each signature."""
 _known: dict[tuple[Any, ...], tuple[Any, Any]] = {}
 """What was found, by what was asked for; with the types asked for, which thereby live on."""
 
@@ -40,6 +43,12 @@ class LeanTyping(BaseTypeInference):  # type: ignore[misc]
             return bool(super().run_pass(state))
 
 
+def _are_plain(kinds: Any) -> bool:
+    """Whether these are types of two numbers or more, of 64 bits."""
+    plain = all(types.unliteral(kind) in (types.float64, types.intp) for kind in kinds)
+    return len(kinds) > 1 and plain
+
+
 @contextmanager
 def _remembering(context: Any) -> Iterator[None]:
     """While a kernel is typed, and those that it calls."""
@@ -57,6 +66,9 @@ def _remembering(context: Any) -> Iterator[None]:
     def resolve_function_type(function: Any, args: Any, keywords: Any) -> Any:
         if keywords or not isinstance(function, types.Function | str):
             return call(function, args, keywords)
+        if getattr(function, "typing_key", None) in EXTREMES and _are_plain(args):
+            kind = types.float64 if types.float64 in args else types.intp
+            return signature(kind, *[kind] * len(args))
         return _recall(call, (function, *args), function, args, keywords)
 
     context.resolve_function_type = resolve_function_type

@@ -1,0 +1,1 @@
+"""The compiler of lean kernels: numba's, with what they need in few instructions."""
