@@ -16,7 +16,7 @@ from ...program.target import JointTarget
 from ...robot.joint import JointKind
 from ...robot.kinematics.chain_kernels import fill_poses
 from ...robot.model import Robot
-from ...spatial.rotation import fill_quaternions
+from ...spatial.rotation import quaternion_from_matrix
 from ...vendor import Vendor
 from ..command.commanded_motion import commanded_motion, stretches
 from ..command.smoothing import Smoothing, smoothing_at
@@ -363,7 +363,7 @@ class Controller:
                 rotation = np.empty((last - first, 3, 3))
                 chain = chains[segment[first]]
                 fill_poses(chain, q[first:last], rotation, position[first:last])
-                fill_quaternions(rotation, quaternion[first:last])
+                quaternion[first:last] = quaternion_from_matrix(rotation)
         return position, quaternion
 
     def _excess_notes(self, program: Program, timing: Timing, trajectory: Trajectory) -> list[Note]:
