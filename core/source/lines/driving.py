@@ -7,16 +7,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from ...dialect import Dialect, MoveWords
-from ...errors import InputError, SourceError
+from ...errors import InputError
 from ...program.arc_orientation import ArcOrientation
 from ...program.event import Event
 from ...program.move import Move
-from ...program.target import Configuration, Target
-from ...program.tool import FLANGE, WORLD, Tool, WorkObject
+from ...program.target import PoseTarget, Target
 from ...program.zone import FINE, Zone
 from ...spatial.pose import IDENTITY, Pose
 from ..patch.uses import UseKind
@@ -25,7 +24,7 @@ from .expressions import Datum, Expression, Number, Operation, parse_all
 from .forms import FormGrammar, Found
 from .motions import MotionWords
 from .moves import ArcPoints, made_move
-from .positions import PositionForm
+from .positions import FrameRegisters, Place, Placed, PositionForm
 from .program import Initial, Said
 from .statements import (
     AssignAll,
@@ -41,86 +40,34 @@ from .statements import (
 _SHARE = "acceleration_override"
 
 
-@dataclass(frozen=True, slots=True)
-class Placed:
-    """Where a motion goes, and with what."""
-
-    target: Target
-    tool: Tool = FLANGE
-    work_object: WorkObject = WORLD
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """What a position is beside its numbers, where it says so itself.
-
-    Args:
-        joints: whether they are joint values.
-        tool, frame: numbers of `FrameRegisters`; None for what is set where it is used.
-        configuration: of a pose.
-    """
-
-    joints: bool = False
-    tool: int | None = None
-    frame: int | None = None
-    configuration: Configuration | None = None
-
-
-@dataclass(frozen=True)
-class FrameRegisters:
-    """The tools and frames of a language. The program itself may set them.
-
-    Args:
-        tool, frame: their words; ``""`` for none.
-        beside: the file that states them, to be put beside programs; ``""`` where there is none.
-        chosen: words of the settings that hold the numbers of those that a motion names none of.
-        numbered: whether they are called by numbers, 0 for the flange and the robot's base; else
-            there is one of each, called as the point that it was set to (`MotionGrammar.framed`).
-    """
-
-    tool: str
-    frame: str = ""
-    beside: str = ""
-    chosen: tuple[str, str] = ("", "")
-    numbered: bool = True
-
-    def both(self, form: PositionForm, place: Place, now: Situation) -> tuple[Tool, WorkObject]:
-        """The tool and the work object of a place.
-
-        Args:
-            form: of their numbers.
-
-        Raises:
-            InputError: nobody knows them.
-        """
-        words = zip((self.tool, self.frame), self.chosen, (place.tool, place.frame), strict=True)
-        (tool, at), (frame, user) = (self._found(*one, form, now) for one in words)
-        return Tool(tool, at) if tool else FLANGE, WorkObject(frame, user=user) if frame else WORLD
-
-    def _found(
-        self, word: str, chosen: str, number: int | None, form: PositionForm, now: Situation
-    ) -> tuple[str, Pose]:
-        """What one is called, ``""`` for none, and where it is."""
-        if not self.numbered:
-            numbers = now.vector(word, None) if word else form.numbers(IDENTITY)
-            pose, kind = form.pose(numbers), getattr(numbers, "kind", None)
-            name = kind if isinstance(kind, str) else word.strip("$").lower()
-            return "" if pose == IDENTITY else name, pose
-        number = int(now.setting(chosen, 0.0)) if number is None else number
-        if not number:
-            return "", IDENTITY
-        try:
-            return f"{word}[{number}]", form.pose(now.vector(word, number))
-        except SourceError:
-            offer = f"put {self.beside} beside the program, or " if self.beside else ""
-            raise InputError(
-                f"{word}[{number}] is not known: {offer}answer {word}[{number},1] to "
-                f"{word}[{number},6] in the table [values]"
-            ) from None
-
-
 Moved = Callable[[Placed, Situation], Placed]
 """What an option of a motion makes of where it goes."""
+
+
+def approached(distance: Expression, unit: float = 1e-3) -> Moved:
+    """Back against the tool's z from where a motion goes (``APPRO p1, 50``).
+
+    Args:
+        distance: in the unit of the text.
+        unit: m of one of it.
+    """
+
+    def moved(placed: Placed, now: Situation) -> Placed:
+        now.computed("target")
+        return replace(placed, target=_back(placed.target, unit * now.number(distance)))
+
+    return moved
+
+
+def _back(target: Target, distance: float) -> Target:
+    """A pose, ``distance`` m against its own z.
+
+    Raises:
+        InputError: it is none.
+    """
+    if not isinstance(target, PoseTarget):
+        raise InputError("joint values have no z to stand back along: give the position as a pose")
+    return replace(target, pose=target.pose @ Pose((0.0, 0.0, -distance)), name=None)
 
 
 def _there(placed: Placed, now: Situation) -> Placed:
@@ -136,7 +83,10 @@ class MotionGrammar(FormGrammar):
     ``word``, ``size`` and ``behind``. What settings set needs no group, and counts where a motion
     says nothing of it itself; ``flying`` has the word by which it says whether a zone that they set
     counts, or nothing. The form ``point`` has ``name``, ``values`` and ``kind``; the form
-    ``framed``, of a tool or frame that is set, ``word`` and ``place`` or ``values``.
+    ``framed``, of a tool or frame that is set, ``word`` and ``place`` or ``values``. An arc's
+    auxiliary point that stands on a line of its own is the form ``via``, with ``point``.
+    ``approach`` and ``depart`` are motions that end a ``distance`` against the tool's z from their
+    ``point``, and from where the robot stands.
 
     Attributes:
         form: of positions.
@@ -146,10 +96,13 @@ class MotionGrammar(FormGrammar):
         chained: kinds of arcs that have one point a line (`ArcPoints`).
         joints: kinds of points that are joint values.
         inline: a position at the motion itself, with the groups ``kind`` and ``values``.
+        written_inline: how such a pose, and such joint values, are written, of their ``numbers``:
+            ``TRANS({numbers})``; ``""`` for neither. Patches put them in.
         count: numbers of a position.
         current: what stands for the numbers of where the running robot is, in capitals.
         override: word of the register that holds the speed override in %.
         frames: tools and frames.
+        unit: m of one of the distances of ``approach`` and ``depart``.
     """
 
     form: PositionForm
@@ -158,6 +111,7 @@ class MotionGrammar(FormGrammar):
     chained: frozenset[str] = frozenset()
     joints: frozenset[str] = frozenset()
     inline: re.Pattern[str] = re.compile(r"(?!)(?P<kind>)(?P<values>)")
+    written_inline: tuple[str, str] = ("", "")
     count: int = 6
     current: frozenset[str] = frozenset()
     override: str = ""
@@ -168,6 +122,7 @@ class MotionGrammar(FormGrammar):
         "kind_of",
         "drive",
     }
+    unit: float = 1e-3
 
     @classmethod
     def amounts(cls) -> Iterator[Amount]:
@@ -180,6 +135,7 @@ class MotionGrammar(FormGrammar):
     def __init__(self) -> None:
         super().__init__()
         self._arc = ArcPoints()
+        self._via: tuple[Line, Operand] | None = None
         if (held := self.frames) is not None:
             none = Numbers.of(self.form.numbers(IDENTITY))
             words = [word for word in (held.tool, held.frame) if word]
@@ -248,6 +204,20 @@ class MotionGrammar(FormGrammar):
         """A motion, of those on one line each; see `drive`."""
         return self.drive(line, found)
 
+    def via(self, line: Line, found: Found) -> Said:
+        """The ``point`` that the arc on the next line goes through."""
+        self._via = line, self.place(line, found, "point")
+        return None
+
+    def approach(self, line: Line, found: Found) -> Said:
+        """A motion to a ``distance`` before its ``point``."""
+        return self.drive(line, found, approached(self.parse(line, found, "distance"), self.unit))
+
+    def depart(self, line: Line, found: Found) -> Said:
+        """A motion back by a ``distance`` from where the robot stands."""
+        distance = Operand(line.span, (self.parse(line, found, "distance"),))
+        return self.drive(line, found, back=distance)
+
     def drive(
         self,
         line: Line,
@@ -255,6 +225,7 @@ class MotionGrammar(FormGrammar):
         moved: Moved = _there,
         events: tuple[Event, ...] = (),
         via: Operand | None = None,
+        back: Operand | None = None,
     ) -> Drive | None:
         """The motion of a line; None where an arc's other points are still to come.
 
@@ -262,11 +233,16 @@ class MotionGrammar(FormGrammar):
             moved: what its options make of where it goes.
             events: on its way.
             via: the auxiliary point of an arc, where another line states it.
+            back: by how much it goes back from where the robot stands, in place of a point.
         """
-        said, point = found["kind"].upper(), self.place(line, found, "point")
+        said = found["kind"].upper()
+        point = self.place(line, found, "point") if back is None else back
         kind = self.kinds.get(said, said[-1])
         given = found.groupdict()
         via = self.place(line, found, "via") if given.get("via") else via
+        if self._via is not None:
+            (first, via), self._via = self._via, None
+            line = replace(line, start=first.start)
         fixed = moved is _there and point.point is not None and not self.holds(point.point.word)
         called = found["point"] if fixed else ""
         if said in self.chained:
@@ -283,7 +259,7 @@ class MotionGrammar(FormGrammar):
         def build(
             target: Numbers, paces: Numbers, sizes: Numbers, through: Numbers, now: Situation
         ) -> Move:
-            goal = moved(self.placed(target, now), now)
+            goal = moved(self.placed(target, now), now) if back is None else self._gone(target, now)
             middle = self.placed(through, now).target if kind == "C" else None
             settings, joint = self.settings, kind == "J"
             if self.words is None or not self._says(found, UseKind.SPEED):
@@ -304,6 +280,14 @@ class MotionGrammar(FormGrammar):
             )
 
         return Drive(line.span, point, speed, zone, build, via)
+
+    def _gone(self, distance: Numbers, now: Situation) -> Placed:
+        """A distance back from where the robot stands."""
+        now.computed("target")
+        if now.before is None or not isinstance(now.before.target, PoseTarget):
+            raise InputError("where the robot stands is no pose that the text states")
+        goal = _back(now.before.target, self.unit * distance[0])
+        return Placed(goal, now.before.tool, now.before.work_object)
 
     def place(self, line: Line, found: Found, group: str) -> Operand:
         """The position in a group, by name or by its numbers."""
@@ -334,7 +318,10 @@ class MotionGrammar(FormGrammar):
             return self.settings.operand(span, kind) if found["flying"] else Operand(span)
         if not self._says(found, kind):
             return self.settings.operand(line.span, kind)
-        whole, *numbers = (group for group in groups if group in found.re.groupindex)
+        known = [group for group in groups if group in found.re.groupindex]
+        if not known:  # no motion says anything of it
+            return Operand(line.span)
+        whole, *numbers = known
         alone = [] if kind is UseKind.ZONE and "word" in found.re.groupindex else [whole]
         given = (group for group in numbers or alone if found[group])
         span = line.source.span(*found.span(whole)) if found[whole] else line.span
@@ -366,7 +353,8 @@ def dialect_of(
     """What a language has words for, by what its motions and settings say.
 
     Joint moves must state what paces them, lines and arcs their speed if there is one number alone
-    that says it. Arcs turn the tool evenly; there are no loads, stationary tools and external axes.
+    that says it, beside accelerations. Arcs turn the tool evenly; there are no loads, stationary
+    tools and external axes.
 
     Args:
         comment: what a line of comment begins with.
@@ -398,12 +386,13 @@ def _move_words(grammar: type[MotionGrammar], joint: bool, configurations: bool)
         stated = {one.name for one in (words.joint if joint else words.line).values()}
     held = settings.speeds(joint)
     speeds = (stated | held) - {_SHARE}
+    paces = {name for name in speeds if "acceleration" not in name and "jerk" not in name}
     shared = {_SHARE} if _SHARE in held or (words is not None and words.share) else set()
     zones = (*(words.zones.values() if words is not None else ()), *settings.zones)
     return MoveWords(
         zones,
         frozenset(speeds | shared),
-        frozenset(speeds) if len(speeds) == 1 else frozenset(),
+        frozenset(paces) if len(paces) == 1 else frozenset(),
         configurations=configurations,
         exclusive=frozenset(stated - {_SHARE}),
     )

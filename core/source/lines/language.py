@@ -72,8 +72,21 @@ class LineWriter:
         """The lines of a move, and what must be said before it."""
         words = self.grammar.words
         kinds = [kind for kind in UseKind if words is None or not words.says(kind)]
+        yield from self.frames(move)
         yield from self.grammar.settings.lines(move, self.said, kinds)
-        yield self.motion(move)
+        yield from self.motion(move).splitlines()
+
+    def frames(self, move: Move) -> Iterator[str]:
+        """What sets the tool and the frame of a move, where that is data (`FrameRegisters`)."""
+        held = self.grammar.frames
+        if held is None or not held.said:
+            return
+        for word, pose in ((held.tool, move.tool.tcp), (held.frame, move.work_object.pose)):
+            if word and pose == IDENTITY:
+                yield from self.changed(word, held.none.format(word=word))
+            elif word:
+                point = self.name(PoseTarget(pose))
+                yield from self.changed(word, held.said.format(word=word, point=point))
 
     def wait(self, wait: Wait) -> str:
         """The line of a wait."""
@@ -82,7 +95,7 @@ class LineWriter:
     # ------------------------------------------------------------- of which moves are made
 
     def motion(self, move: Move, *beside: str) -> str:
-        """The line of a motion to its points; ``beside``: what else these say."""
+        """The line, or lines, of a motion to its points; ``beside``: what else these say."""
         assert self.grammar.words is not None
         letter, targets = said(move)
         word = next((word for word, one in self.grammar.kinds.items() if one == letter), letter)
@@ -190,12 +203,25 @@ class LineLanguage:
         """What is put at a move that gets numbers, or words, of its own; ``later``: the moves
         behind it."""
         words, settings = self._words(use.kind, use.move), self.grammar.settings
-        if isinstance(use.new, JointTarget | PoseTarget) or not (words or settings.sets(use.kind)):
+        if not self.gives(use):
             raise InputError(
                 "there is no number of its own to change, and a position of its own is not put "
                 "in: change it for all that use it, or write the program anew"
             )
+        if isinstance(use.new, JointTarget | PoseTarget):
+            numbers = ", ".join(map(nine_decimals, self.grammar.form.numbers(use.new)))
+            yield Edit(use.origin.span, self._inline(use).format(numbers=numbers), use.index)
+            return
         yield from settings.own(use, later) if words is None else words.own(use)
+
+    def gives(self, use: Use) -> bool:
+        """Whether a part of a move can get numbers, or words, of its own."""
+        if isinstance(use.new, JointTarget | PoseTarget):
+            return bool(self._inline(use)) and use.origin.span != use.statement
+        return bool(self._words(use.kind, use.move) or self.grammar.settings.sets(use.kind))
+
+    def _inline(self, use: Use) -> str:
+        return self.grammar.written_inline[isinstance(use.new, JointTarget)]
 
     def reworded(self, use: Use) -> bool:
         """Whether a word at the motion, and no number, says what is to change."""

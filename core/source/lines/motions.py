@@ -19,7 +19,7 @@ from .amounts import Units, of_arm, stated, with_number
 
 @dataclass(frozen=True)
 class MotionWords:
-    """How motions say their speed and zone.
+    r"""How motions say their speed and zone.
 
     Args:
         joint, line: what the number of a speed is in joint moves, and in lines and arcs, by its
@@ -29,7 +29,8 @@ class MotionWords:
         unstated: what stands for a speed of which a move states nothing.
         speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
         share: how a share of acceleration is written, of its ``number`` in %.
-        via: how an arc's auxiliary point stands in it, of its ``point``.
+        via: how an arc's auxiliary point stands in it, of its ``point``; with ``\n`` at its end
+            for one that has a line of its own, which the form ``via`` reads.
         motion: a whole motion: of its ``kind`` (J, L, C), ``via``, ``point``, ``speed``, ``zone``
             and ``share``.
     """
@@ -148,7 +149,7 @@ class MotionWords:
             zone=self.zone_text(move),
             share="" if share == 1.0 else self.share.format(number=nine_decimals(100 * share)),
         )
-        return " ".join(said.split())
+        return "\n".join(" ".join(line.split()) for line in said.splitlines())
 
     def speed_text(self, move: Move) -> str:
         """The words of a move's speed, without its share of acceleration."""

@@ -39,6 +39,10 @@ class Patching(Protocol):
         the move stands behind its line, and the comment there. ``later``: the moves behind it."""
         ...
 
+    def gives(self, use: Use) -> bool:
+        """Whether `own` can."""
+        ...
+
     def reworded(self, use: Use) -> bool:
         """Whether a word at the motion, and no number, says the part."""
         ...
@@ -162,9 +166,9 @@ def _edits(plan: PatchPlan, use: Use, language: Patching, later: Sequence[Move])
         if language.reworded(use) or (at_move and not against):
             pass  # other words at the move itself: a stop becomes a zone
         elif use.origin.numbers:
-            plan.check_shared(use, against)
+            plan.check_shared(use, against, language.gives(use))
         else:
-            plan.check_computed()
+            plan.check_computed(language.gives(use))
         plan.check_executions(use)
         return list(language.own(use, later))
     except InputError as error:

@@ -1,4 +1,4 @@
-"""Positions as six or seven numbers of a text, and back."""
+"""Positions as six or seven numbers of a text, and back; the tools and frames that they are in."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...dialect import Orientation
+from ...errors import InputError, SourceError
 from ...program.target import Configuration, JointTarget, PoseTarget, Target
-from ...spatial.pose import Pose
+from ...program.tool import FLANGE, WORLD, Tool, WorkObject
+from ...spatial.pose import IDENTITY, Pose
 from ...spatial.rotation import (
     euler_zyx,
     euler_zyz,
@@ -19,6 +21,7 @@ from ...spatial.rotation import (
     matrix_from_rotation_vector,
     rotation_vector,
 )
+from .statements import Situation
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +90,89 @@ class PositionForm:
         if self.in_si:
             return (*place, *turns)
         return (*place, *(_one_name(math.degrees(turn)) for turn in turns))
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """Where a motion goes, and with what."""
+
+    target: Target
+    tool: Tool = FLANGE
+    work_object: WorkObject = WORLD
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """What a position is beside its numbers, where it says so itself.
+
+    Args:
+        joints: whether they are joint values.
+        tool, frame: numbers of `FrameRegisters`; None for what is set where it is used.
+        configuration: of a pose.
+    """
+
+    joints: bool = False
+    tool: int | None = None
+    frame: int | None = None
+    configuration: Configuration | None = None
+
+
+@dataclass(frozen=True)
+class FrameRegisters:
+    """The tools and frames of a language. The program itself may set them.
+
+    Args:
+        tool, frame: their words; ``""`` for none.
+        beside: the file that states them, to be put beside programs; ``""`` where there is none.
+        chosen: words of the settings that hold the numbers of those that a motion names none of.
+        numbered: whether they are called by numbers, 0 for the flange and the robot's base; else
+            there is one of each, called as the point that it was set to (`MotionGrammar.framed`).
+        said: how one that is not numbered is set, of its ``word`` and ``point``; ``""`` where the
+            writer says it otherwise.
+        none: how it is set to none.
+    """
+
+    tool: str
+    frame: str = ""
+    beside: str = ""
+    chosen: tuple[str, str] = ("", "")
+    numbered: bool = True
+    said: str = ""
+    none: str = "{word} NONE"
+
+    def both(self, form: PositionForm, place: Place, now: Situation) -> tuple[Tool, WorkObject]:
+        """The tool and the work object of a place.
+
+        Args:
+            form: of their numbers.
+
+        Raises:
+            InputError: nobody knows them.
+        """
+        words = zip((self.tool, self.frame), self.chosen, (place.tool, place.frame), strict=True)
+        (tool, at), (frame, user) = (self._found(*one, form, now) for one in words)
+        return Tool(tool, at) if tool else FLANGE, WorkObject(frame, user=user) if frame else WORLD
+
+    def _found(
+        self, word: str, chosen: str, number: int | None, form: PositionForm, now: Situation
+    ) -> tuple[str, Pose]:
+        """What one is called, ``""`` for none, and where it is."""
+        if not self.numbered:
+            numbers = now.vector(word, None) if word else form.numbers(IDENTITY)
+            pose, kind = form.pose(numbers), getattr(numbers, "kind", None)
+            name = kind if isinstance(kind, str) else word.strip("$").lower()
+            return "" if pose == IDENTITY else name, pose
+        number = int(now.setting(chosen, 0.0)) if number is None else number
+        if not number:
+            return "", IDENTITY
+        try:
+            return f"{word}[{number}]", form.pose(now.vector(word, number))
+        except SourceError:
+            offer = f"put {self.beside} beside the program, or " if self.beside else ""
+            raise InputError(
+                f"{word}[{number}] is not known: {offer}answer {word}[{number},1] to "
+                f"{word}[{number},6] in the table [values]"
+            ) from None
 
 
 def _one_name(degrees: float) -> float:

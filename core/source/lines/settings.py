@@ -14,7 +14,7 @@ from functools import cached_property
 
 from ...display import counted
 from ...errors import InputError, Span
-from ...program.move import Move, MoveJ
+from ...program.move import Move, MoveC, MoveJ
 from ...program.speed import Speed
 from ...program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind
 from ...robot.model import Robot
@@ -412,13 +412,16 @@ class Settings:
         behind = Span(start.file, start.line, start.column, start.end, start.end)
         gap = f"\n{' ' * (start.column - 1)}"
         put_in, put_back = "", ""
+        # An arc may stand on several lines, and what holds for one motion be used up on the first.
+        several = isinstance(use.move, MoveC)
         was = self._counting(use.kind, old)
         for one in self._counting(use.kind, use.new):
             held, new = (one.said(use.move, part) for part in (old, use.new))
             if new and held != new:
-                put_in += f"{new}{gap}"
-                held = held if one.always is None and one in was else None
-                put_back += f"{gap}{held}" if held else ""
+                always = f" {one.always}" if one.always and several else ""
+                put_in += f"{new}{always}{gap}"
+                held = held if (one.always is None or several) and one in was else None
+                put_back += f"{gap}{held}{always}" if held else ""
         if put_in:
             yield Edit(before, put_in, use.index)
         if put_back:

@@ -32,6 +32,8 @@ class Signals:
         inputs: of digital inputs, likewise.
         analogue: of outputs that have a level.
         written: how a signal is written: ``OT#({number})``.
+        first: by word, what is added to numbers in the text: ``{"WX": 1000}`` where inputs are
+            ``1001`` and so on. Signals themselves are counted from 1 (`spelt`).
         switch: the statement that sets an output, of its ``signal`` and ``value``.
         pulse: that of a pulse, of its ``signal`` and ``time``, s; ``""`` for none.
         wait: that waits for a ``condition``.
@@ -46,6 +48,7 @@ class Signals:
     inputs: tuple[str, ...]
     analogue: tuple[str, ...] = ()
     written: str = "{word}[{number}]"
+    first: Mapping[str, int] = field(default_factory=dict)
     switch: str = "{signal}={value}"
     pulse: str = ""
     wait: str = "WAIT {condition}"
@@ -118,7 +121,8 @@ class Signals:
         return self.pulse.format(signal=self._written(action.name), time=f"{action.pulse:g}")
 
     def spelt(self, name: str) -> str | None:
-        """A signal as it is called; None for what is no name of one."""
+        """The canonical name of a signal, ``DO[1]``, by which answers, links and maps of signals
+        know it, however it is `written`; None for what is no name of one."""
         words = "|".join((*self.digital, *self.inputs, *self.analogue))
         found = re.fullmatch(rf"\s*({words})\W{{0,3}}(\d+)\W{{0,3}}", name, re.IGNORECASE)
         return None if found is None else f"{found[1].upper()}[{found[2]}]"
@@ -136,7 +140,7 @@ class Signals:
 
     def _written(self, name: str) -> str:
         word, _, number = name.rstrip("]").partition("[")
-        return self.written.format(word=word, number=number)
+        return self.written.format(word=word, number=int(number) + self.first.get(word, 0))
 
     @staticmethod
     def _name(datum: Expression, words: tuple[str, ...]) -> str | None:

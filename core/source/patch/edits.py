@@ -14,6 +14,7 @@ from itertools import pairwise
 from ...display import counted
 from ...errors import InputError, Span
 from ...program.move import Move
+from ...program.origin import Origin, Ownership
 from ...program.program import Program
 from ...program.zone import Radius
 from ...spatial.pose import Pose
@@ -96,6 +97,17 @@ def _with_one_distance(move: Move) -> Move:
         return move
 
 
+def _why_not(after: Program, move: int, part: str) -> str:
+    """What to do about a part that comes out otherwise than it was wanted."""
+    origin = getattr(after.moves[move].origin, part, None)
+    if isinstance(origin, Origin) and origin.ownership is Ownership.DERIVED:
+        return (
+            "The program computes it from what was changed (a point that it reads too, or where "
+            "the move before ends): change both, as the program has it, or neither"
+        )
+    return "A number that several moves read must be changed for all of them or for none"
+
+
 def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:
     """The files with their edits, read again and found to be the changed program.
 
@@ -117,8 +129,7 @@ def patched(after: Program, reading: Reading, edits: Iterable[Edit]) -> Files:
         move, part = found
         raise InputError(
             f"the patched text does not give the changed program: move {move + 1} has another "
-            f"{part}. A number that several moves read must be changed for all of them or for "
-            "none; nothing was changed"
+            f"{part}. {_why_not(after, move, part)}; nothing was changed"
             if move >= 0
             else f"the patched text does not give the changed program: {part}; nothing was changed"
         )

@@ -130,25 +130,29 @@ class PatchPlan:
             if not alike(said(other), said(use))
         ]
 
-    def check_computed(self) -> None:
+    def check_computed(self, offered: bool = True) -> None:
         """Refuse numbers of its own for what no literal states, if the user has not asked.
+
+        Args:
+            offered: whether the language can give it some.
 
         Raises:
             InputError: so it is.
         """
         if self._options.derived is Sharing.REFUSE:
+            own = f"have the move get its own ({switched('own')}), or " if offered else ""
             raise InputError(
                 "the program computes it, or no literal in its files states it, so there is no "
-                f"number to change: have the move get its own ({switched('own')}), or "
-                "leave it as it is"
+                f"number to change: {own}leave it as it is"
             )
 
-    def check_shared(self, use: Use, against: Sequence[int]) -> None:
+    def check_shared(self, use: Use, against: Sequence[int], offered: bool = True) -> None:
         """Refuse numbers of its own for what others read too, if the user has not asked.
 
         Args:
             against: the moves that are to have another value; none where the literal does not
                 state all of it.
+            offered: whether the language can give it some.
 
         Raises:
             InputError: so it is.
@@ -156,10 +160,11 @@ class PatchPlan:
         if self._options.shared is Sharing.REFUSE:
             who = f"is read by {listed(against)} as well, and that is to have another value"
             names = {use.origin.datum, *use.origin.data} - {None}
+            own = f"have the move get its own ({switched('own')})"
             raise InputError(
                 f"{names.pop() if len(names) == 1 else 'the literal'} "
                 f"{who if against else 'does not state all of it'}: change them all alike, or "
-                f"have the move get its own ({switched('own')})"
+                f"{own if offered else 'write the program anew'}"
             )
 
     def check_executions(self, use: Use, said: Said = _value) -> None:

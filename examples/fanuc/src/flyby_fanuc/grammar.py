@@ -9,10 +9,11 @@ from typing import ClassVar
 from flyby.core.errors import InputError
 from flyby.core.program.event import Event
 from flyby.core.program.target import JointTarget
-from flyby.core.source.lines.driving import MotionGrammar, Placed
+from flyby.core.source.lines.driving import MotionGrammar
 from flyby.core.source.lines.expressions import Number, Spelling, parse
 from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.moves import counted_on
+from flyby.core.source.lines.positions import Placed
 from flyby.core.source.lines.program import Said
 from flyby.core.source.lines.statements import Line, NumberedPoint, Situation
 

@@ -11,11 +11,11 @@ from flyby.core.dialect import RoutineText, Wording
 from flyby.core.language import Sources
 from flyby.core.recording import Recording, cycles_in, listed, routine
 from flyby.core.robot.model import Robot
-from flyby.core.source.lines.driving import Place, dialect_of
+from flyby.core.source.lines.driving import dialect_of
 from flyby.core.source.lines.language import LineLanguage
 from flyby.core.source.lines.program import LineProgram
 from flyby.core.source.lines.signals import Signals
-from flyby.core.source.lines.statements import Body, Line, Numbers
+from flyby.core.source.lines.statements import Line, Numbers
 from flyby.core.source.text.files import SourceText
 from flyby.core.source.write.options import OpaqueStyle, WriterOptions
 
@@ -106,7 +106,7 @@ class Language(LineLanguage):
         words = _VARIABLES.get(Path(file).name.lower())
         if words is None:
             return super().program(text, file)
-        return LineProgram(file, {file: text}, {"": Body()}, data=dict(_variables(text, words)))
+        return LineProgram(file, {file: text}, {}, data=dict(_variables(text, words)))
 
     def comment(self, text: str) -> Iterator[str]:
         """See `LineLanguage`."""
@@ -163,4 +163,4 @@ def _variables(
         values = dict(_COORDINATE.findall(found["value"]))
         if word is not None and len(values) == 6:
             numbers = (float(values[axis]) for axis in "XYZWPR")
-            yield (word, int(found["index"])), Numbers.of(numbers, Place())
+            yield (word, int(found["index"])), Numbers.of(numbers)

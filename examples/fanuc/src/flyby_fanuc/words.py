@@ -8,9 +8,8 @@ import re
 from flyby.core.dialect import Orientation
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import FrameRegisters
 from flyby.core.source.lines.motions import MotionWords
-from flyby.core.source.lines.positions import PositionForm
+from flyby.core.source.lines.positions import FrameRegisters, PositionForm
 from flyby.core.source.lines.postures import PostureLetters
 
 CNT = ZoneKind("CNT")

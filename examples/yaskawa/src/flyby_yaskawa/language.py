@@ -13,13 +13,13 @@ from flyby.core.program.move import Move
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, Place, Placed, dialect_of
+from flyby.core.source.lines.driving import MotionGrammar, dialect_of
 from flyby.core.source.lines.expressions import Number, Operation, Spelling
 from flyby.core.source.lines.forms import Found
 from flyby.core.source.lines.language import LineLanguage, LineWriter
 from flyby.core.source.lines.motions import MotionWords
 from flyby.core.source.lines.moves import said
-from flyby.core.source.lines.positions import PositionForm
+from flyby.core.source.lines.positions import FrameRegisters, Place, Placed, PositionForm
 from flyby.core.source.lines.program import Said
 from flyby.core.source.lines.signals import Signals
 from flyby.core.source.lines.statements import Assign, Line, Numbers, Situation

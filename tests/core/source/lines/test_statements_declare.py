@@ -17,11 +17,11 @@ from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, Target
 from flyby.core.program.zone import FINE, VendorZone, ZoneKind
 from flyby.core.source.lines.amounts import Amount
-from flyby.core.source.lines.driving import FrameRegisters, MotionGrammar, dialect_of
+from flyby.core.source.lines.driving import MotionGrammar, dialect_of
 from flyby.core.source.lines.expressions import Spelling
 from flyby.core.source.lines.language import LineLanguage, LineWriter
 from flyby.core.source.lines.motions import MotionWords
-from flyby.core.source.lines.positions import PositionForm
+from flyby.core.source.lines.positions import FrameRegisters, PositionForm
 from flyby.core.source.lines.settings import Setting, Settings
 from flyby.core.source.reading import ReadOptions
 from flyby.core.source.text.numerals import nine_decimals
