@@ -138,18 +138,35 @@ def targets_of(handling: Handling | None) -> tuple[int, ...]:
 
 
 def idle_notes(
-    program: Program, setup: Setup, options: WaypointOptions, task: WaypointTask
+    program: Program,
+    setup: Setup,
+    options: WaypointOptions,
+    task: WaypointTask,
+    told: Sequence[Note] = (),
 ) -> list[Note]:
-    """Notes on options that change nothing of what is done."""
+    """Notes on options that change nothing of what is done.
+
+    Args:
+        program, setup: what was improved.
+        options, task: as asked.
+        told: notes of the search, which say what stays.
+    """
     from ..core.program.target import JointTarget
     from ..core.program.zone import Fine
+    from ..problems.improve.waypoints.changeable import STAYS
 
     moves = program.moves
     passed = {i for i, move in enumerate(moves) if not isinstance(move.zone, Fine)}
     passed |= set(task.freed)
     notes = idle_kept(program, options.keep, passed, path=True)
     notes += idle_freed(program, options.free, outputs_at_work(program, setup))
-    notes += idle_limits(program, options.limit, passed)
+    still = [note.message.partition(f"{STAYS}: ") for note in told]
+    stay = {
+        note.move: why
+        for note, (part, found, why) in zip(told, still, strict=True)
+        if found and part in ("", "its target ") and note.move is not None
+    }
+    notes += idle_limits(program, options.limit, passed, stay)
     by_joints = any(isinstance(moves[i].target, JointTarget) for i in passed)
     if options.axes is not None and not by_joints:
         why = "no via point is given by joint values"

@@ -123,9 +123,8 @@ def optimize_beside(program: Program, options: OptimizeOptions, beside: Beside |
         return course.loaded(texts.read_back(course.unloaded(changed)))
 
     found = optimize_waypoints(controller, course.program, cell, task, effort, read_back, report)
-    return delivered(
-        course.given_back(found), texts, setup, idle_notes(program, setup, options, task)
-    )
+    idle = idle_notes(program, setup, options, task, found.notes)
+    return delivered(course.given_back(found), texts, setup, idle)
 
 
 def effort_of(starts: int | None, generations: int | None, seed: int) -> Effort:

@@ -97,11 +97,12 @@ def pareto_with(program: Program, options: ParetoOptions) -> ProgramFront:
         known = own.get(id(point.program))
         return replace(point, program=known or course.unloaded(point.program))
 
+    idle = idle_notes(program, setup, options, wishes, made.notes)
     made = replace(
         made,
         given=given_back(made.given),
         points=tuple(map(given_back, made.points)),
-        notes=(*idle_notes(program, setup, options, wishes), *course.notes, *made.notes),
+        notes=(*idle, *course.notes, *made.notes),
     )
     return ProgramFront.of(made, program, texts, setup)
 

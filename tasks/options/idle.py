@@ -55,21 +55,28 @@ def idle_freed(
 
 
 def idle_limits(
-    program: Program, limits: Sequence[str] | Mapping[int | str, object], passed: Collection[int]
+    program: Program,
+    limits: Sequence[str] | Mapping[int | str, object],
+    passed: Collection[int],
+    stay: Mapping[int, str],
 ) -> list[Note]:
-    """Notes on limits of points that do not move in any case."""
+    """Notes on limits of points that do not move in any case.
+
+    Args:
+        program: the program.
+        limits: as given; they are known to name moves or speeds.
+        passed: indices of the moves that the robot passes.
+        stay: why targets of some of these stay.
+    """
     notes = []
     names = list(limits) if isinstance(limits, Mapping) else [t.partition("=")[0] for t in limits]
     for text in map(str, names):
         if text == ALL:
             continue
         moves = _named(program, text, "limit")
-        if moves and not set(moves) & set(passed):
-            notes.append(
-                _note(
-                    "limit", text, "the robot stops there, and stops stay where they are", moves[0]
-                )
-            )
+        if moves and not set(moves) & set(passed) - set(stay):
+            why = "the robot stops there, and stops stay where they are"
+            notes.append(_note("limit", text, stay.get(moves[0], why), moves[0]))
     return notes
 
 

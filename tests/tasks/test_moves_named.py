@@ -76,6 +76,12 @@ def test_an_option_without_effect_is_noted() -> None:
     quick = {"starts": 1, "generations": 0}
     made = flyby.optimize(FOLDED, limit="5=box:10", **quick)
     assert "limit 5 has no effect: the robot stops there" in "".join(map(str, made.notes))
+    square = flyby.read(ROOT / "examples/square.mod", robot="abb/irb6640-180-255")
+    made = flyby.optimize(square, limit="line:10=box:10", **quick)
+    told = [note.message for note in made.notes]
+    assert "limit line:10 has no effect: the program computes its target" in told
+    # Its zone does change, so it is not all of the move that stays.
+    assert "its target stays as it is: the program computes its target" in told
     made = flyby.optimize(FOLDED, limit="line:13=joints:2", **quick)
     assert not any("no effect" in note.message for note in made.notes)
     moved = made.program.moves[1].target.joints

@@ -322,7 +322,7 @@ class _Work:
         wishes = replace(wishes, freed=())
         robot = self.controller.robot
         selection = select(program, driven.path, robot, wishes)
-        notes += [Note(f"stays as it is: {why}", i) for i, why in selection.reasons.items()]
+        notes += [Note(said, i) for i, said in selection.stays.items()]
         made = make_variables(program, robot, selection, wishes)
         return made if made.size else None
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Hashable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,6 +35,8 @@ from .point_limits import Fixed, PointLimit
 _RADII = (0.01, 0.003, 0.001)
 """m that freed stops begin with: the first with which every waypoint is still driven."""
 
+STAYS = "stays as it is"
+
 
 @dataclass(frozen=True)
 class Selection:
@@ -43,14 +45,22 @@ class Selection:
     Args:
         points: groups of moves (indices) whose targets are one datum each, and may move.
         zones: groups of moves whose zones are one datum each, and may change.
-        reasons: why a fly-by point stays, by the index of its move.
+        reasons: why a fly-by point, or its zone, stays, by the index of its move.
         passed: indices of the moves whose waypoint the robot passes.
+        alone: which of both stays where the other one may change: ``target`` or ``zone``.
     """
 
     points: tuple[tuple[int, ...], ...]
     zones: tuple[tuple[int, ...], ...]
     reasons: dict[int, str]
     passed: tuple[int, ...]
+    alone: dict[int, str] = field(default_factory=dict)
+
+    @property
+    def stays(self) -> dict[int, str]:
+        """The reasons in sentences."""
+        parts = {i: f"its {part} " for i, part in self.alone.items()}
+        return {i: f"{parts.get(i, '')}{STAYS}: {why}" for i, why in self.reasons.items()}
 
 
 def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Selection:
@@ -91,9 +101,13 @@ def select(program: Program, path: Path, robot: Robot, task: WaypointTask) -> Se
     points = _groups(moves, passed, why_point, "target")
     zones = _groups(moves, passed, why_zone, "zone")
     reasons = {i: why for i, why in why_zone.items() if not any(i in g for g in zones)}
+    alone = dict.fromkeys(reasons, "zone")
     if task.freedom is not Freedom.ZONES:
-        reasons |= {i: why for i, why in why_point.items() if not any(i in g for g in points)}
-    return Selection(points, zones, dict(sorted(reasons.items())), passed)
+        still = {i: why for i, why in why_point.items() if not any(i in g for g in points)}
+        alone |= dict.fromkeys(still, "target")
+        alone = {i: part for i, part in alone.items() if not (i in reasons and i in still)}
+        reasons |= still
+    return Selection(points, zones, dict(sorted(reasons.items())), passed, alone)
 
 
 def beside_parts(task: WaypointTask, program: Program, path: Path, scenes: SceneOf) -> WaypointTask:

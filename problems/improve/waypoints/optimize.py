@@ -421,8 +421,7 @@ def _stays(program: Program, selection: Selection, freedom: Freedom) -> list[Not
             )
         ]
     notes = [
-        Note(f"stays as it is: {why}", move, program.moves[move].statement)
-        for move, why in selection.reasons.items()
+        Note(said, move, program.moves[move].statement) for move, said in selection.stays.items()
     ]
     if freedom is Freedom.WAYPOINTS_AND_ZONES and not selection.points:
         notes.append(Note("no via point may move: only zones are optimised"))
