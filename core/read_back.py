@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from .errors import FlybyError, InputError, MotionError
 from .program.folding import usable
-from .program.move import Move, Statement, Wait
+from .program.move import Move, Opaque, Statement, Wait
 from .program.program import Program
 from .program.target import JointTarget, PoseTarget
 from .source.execution.answers import Answers
@@ -42,6 +42,7 @@ def check_alone(
     reader: Reader,
     suffixes: tuple[str, ...],
     waits: bool = True,
+    comments: bool = False,
 ) -> None:
     """Refuse texts that do not drive the moves of their program.
 
@@ -54,6 +55,7 @@ def check_alone(
         sources: its texts by file name.
         reader, suffixes: of their language.
         waits: whether the texts wait no longer than the program.
+        comments: whether kept statements are comments in them.
 
     Raises:
         InputError: the texts cannot be read, or not without the user's other files.
@@ -62,7 +64,7 @@ def check_alone(
     main = next((name for name in sources if name.lower().endswith(suffixes)), None)
     if main is None or not program.moves:
         return
-    reading = program.reading
+    reading, kept = program.reading, not comments and _kept(program)
     answers = reading.options.answers if isinstance(reading, Reading) else Answers()
     # What was decided at lines of the old files means nothing in the new ones.
     passes = max((len(s.passes) for s in usable(program) if s.endless), default=1)
@@ -76,22 +78,21 @@ def check_alone(
         except FlybyError as error:
             raise InputError(
                 f"program {program.name!r} cannot be written anew: its text would not be read "
-                f"again ({str(error).replace(folder, '')}); patch its own files, or make kept "
-                f"statements comments ({as_comments()})"
+                f"again ({str(error).replace(folder, '')}); patch its own files{_mended(kept)}"
             ) from None
-    _compare_moves(program, again)
+    _compare_moves(program, again, kept)
     if waits:
         _compare_waits(program, again)
 
 
-def _compare_moves(program: Program, again: Program) -> None:
+def _compare_moves(program: Program, again: Program, kept: bool) -> None:
     for index, (move, other) in enumerate(zip(program.moves, again.moves, strict=False)):
         part = _differing(move, other)
         if part is not None:
-            raise _refusal(program, index, f"another {part}")
+            raise _refusal(program, index, f"another {part}", kept)
     counts = len(program.moves), len(again.moves)
     if counts[0] != counts[1]:
-        raise _refusal(program, min(counts) - 1, f"{counts[1]} moves instead of {counts[0]}")
+        raise _refusal(program, min(counts) - 1, f"{counts[1]} moves instead of {counts[0]}", kept)
 
 
 def _compare_waits(program: Program, again: Program) -> None:
@@ -103,16 +104,30 @@ def _compare_waits(program: Program, again: Program) -> None:
         )
 
 
-def _refusal(program: Program, index: int, what: str) -> MotionError:
+def _kept(program: Program) -> bool:
+    return any(isinstance(statement, Opaque) for statement in program.statements)
+
+
+def _mended(kept: bool) -> str:
+    """What to do beside patching, where statements are kept; nothing where none are."""
+    return f", or make kept statements comments ({as_comments()})" if kept else ""
+
+
+def _refusal(program: Program, index: int, what: str, kept: bool) -> MotionError:
     index = max(index, 0)
     origin = program.moves[index].origin
     return MotionError(
-        f"written anew, the program has {what} here than it has been driven with: a statement that "
-        f"is kept moves the robot, or sets what moves depend on; make kept statements comments "
-        f"({as_comments()}), or patch the program's own files",
+        f"written anew, the program has {what} here than it has been driven with: "
+        f"{_reason(kept)}; patch the program's own files{_mended(kept)}",
         index,
         None if origin is None else origin.statement,
     )
+
+
+def _reason(kept: bool) -> str:
+    if kept:
+        return "a statement that is kept moves the robot, or sets what moves depend on"
+    return "the language's writer does not say what its reader reads"
 
 
 def _differing(move: Move, other: Move) -> str | None:

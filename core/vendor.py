@@ -236,11 +236,12 @@ class Vendor:
         said = self._approached(program, robot)
         sources = writer.write(said, robot, options or {})
         wording = None if self.speaks is None else self.speaks.wording
-        if wording is not None and (options or {}).get("opaque") != "comment":
+        comments = (options or {}).get("opaque") == "comment"
+        if wording is not None and not comments:
             from .source.write.kept import check_kept
 
             check_kept(said, sources, wording)
-        self._check_alone(said, robot, sources)
+        self._check_alone(said, robot, sources, comments=comments)
         return sources
 
     def patch(
@@ -290,12 +291,17 @@ class Vendor:
         return sources
 
     def _check_alone(
-        self, program: Program, robot: Robot, sources: Sources, waits: bool = True
+        self,
+        program: Program,
+        robot: Robot,
+        sources: Sources,
+        waits: bool = True,
+        comments: bool = False,
     ) -> None:
         if self.reader is not None:
             from .read_back import check_alone
 
-            check_alone(program, robot, sources, self.reader, self.suffixes, waits)
+            check_alone(program, robot, sources, self.reader, self.suffixes, waits, comments)
 
     def _approached(self, program: Program, robot: Robot) -> Program:
         from .source.write.approach import with_approach

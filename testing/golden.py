@@ -49,6 +49,7 @@ from ..core.dialect import SignalWords
 from ..core.errors import InputError
 from ..core.program.event import Event
 from ..core.program.move import MoveC, Opaque, Statement, Wait
+from ..core.program.question import Answer
 from ..core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from ..core.program.target import JointTarget, Target
 from ..core.program.zone import zone_word
@@ -97,6 +98,7 @@ class GoldenText:
         entry: the routine that is driven; None for the usual one.
         recorded: s between samples of its recording, and lines that this has; None if it is not
             recorded.
+        answers: to what the text asks of the world, by the names of inputs and data.
     """
 
     about: str
@@ -105,6 +107,7 @@ class GoldenText:
     robot: str | None = None
     entry: str | None = None
     recorded: tuple[float, tuple[str, ...]] | None = None
+    answers: Mapping[str, Answer] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -189,7 +192,9 @@ def _text(data: Mapping[str, Any], shared: Mapping[str, Any]) -> GoldenText:
             )
         recorded = own["period"], tuple(own["lines"])
     files = dict(data["files"])
-    return GoldenText(about, files, rows, data.get("robot"), data.get("entry"), recorded)
+    told = data.get("answers", {})
+    answers = {k: float(v) if type(v) is int else v for k, v in told.items()}
+    return GoldenText(about, files, rows, data.get("robot"), data.get("entry"), recorded, answers)
 
 
 def _spelt_out(row: Mapping[str, Any], shared: Mapping[str, Any]) -> dict[str, Any]:

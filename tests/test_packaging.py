@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -53,7 +55,7 @@ def test_every_data_file_is_packaged() -> None:
 
 
 def test_the_root_holds_no_stray_module() -> None:
-    assert {path.name for path in ROOT.glob("*.py")} == {"__init__.py"}
+    assert {path.name for path in ROOT.glob("*.py")} == {"__init__.py", "__main__.py"}
 
 
 @pytest.mark.parametrize("name", LINKS)
@@ -98,3 +100,10 @@ def test_extras_that_are_named_exist() -> None:
     assert len(named) > 3
     for extra, place in named:
         assert extra in known, (extra, place)
+
+
+def test_the_package_is_the_command() -> None:
+    said = subprocess.run(
+        [sys.executable, "-m", "flyby", "--version"], capture_output=True, text=True, check=True
+    )
+    assert said.stdout.startswith("flyby ")

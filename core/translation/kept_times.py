@@ -24,7 +24,7 @@ _TOLD = 0.05
 _SHORT = 0.02
 """s: a difference of times that is not told."""
 _TOLD_TOGETHER = 0.02
-"""Share of the whole time from which on what is too little to be told of each move is told."""
+"""Share of the whole time from which on differences too small by themselves are reported."""
 _MET = 0.02
 """Share of a move's time by which it is met."""
 _STEPPED = ("joint_fraction", SHARE, OVERRIDE)

@@ -10,7 +10,7 @@ from itertools import zip_longest
 import numpy as np
 import pytest
 
-from ...core.errors import FlybyError
+from ...core.errors import FaultCause, FlybyError
 from ...core.language import Reader
 from ...core.motion.emulator.controller import Controller
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement
@@ -30,6 +30,7 @@ from .telling import line_of, text_of, told
 
 _STANDS = 0.02
 """degrees by which joints may be off: data sheets give 0.1 mm, texts 0.0001 mm."""
+_NOWHERE = "the golden text: the robot is taken to stand where its first move ends; add a move"
 _PLACE = 2e-4
 """m and dimensionless, of the flange on data sheets."""
 _UNLIMITED = {name: getattr(Speed(), name) for name in Speed.__slots__}
@@ -73,7 +74,8 @@ class GoldenChecks(Subject):
                 route = Controller(self.vendor, robot).plan(program).route
             except FlybyError as error:
                 what = f"{text.about!r} cannot be driven by {text.robot}: {error}"
-                raise AssertionError(told(what, look="stands")) from error
+                nowhere = getattr(error, "cause", None) is FaultCause.NOWHERE
+                raise AssertionError(told(what, look=_NOWHERE if nowhere else "stands")) from error
             q = dict(zip(route.moves, route.ends.q[:, 1], strict=True))
             q.setdefault(0, route.ends.q[0, 0])
             for index, (row, move) in enumerate(zip(rows, program.moves, strict=True)):

@@ -27,6 +27,7 @@ from ...core.program.zone import Zone, ZoneKind
 from ...core.registry import find_vendor
 from ...core.robot.joint import JointKind
 from ...core.robot.model import Robot
+from ...core.source.execution.answers import Answers
 from ...core.source.patch.edits import TOLERANCE, difference
 from ...core.source.write.approach import with_approach
 from ...core.spatial.pose import IDENTITY
@@ -289,7 +290,7 @@ class Subject:
                 (Path(folder) / file).write_text(said, "utf-8")
             main = Path(folder) / next(iter(text.files))
             try:
-                return self.vendor.read_file(main, text.entry, robot)
+                return self.vendor.read_file(main, text.entry, robot, Answers(values=text.answers))
             except FlybyError as error:
                 look = "the reader: the text runs on a controller, by its author"
                 what = f"{self.name}: golden text {text.about!r} cannot be read: {error}"

@@ -20,6 +20,7 @@ from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
 from flyby.core.registry import Registry
+from flyby.core.source.reading import ReadOptions
 from flyby.core.source.write.refusals import check_said
 from flyby.core.spatial.pose import Pose
 from flyby.testing.conformance import VendorConformance
@@ -146,6 +147,18 @@ def test_the_language_of_the_page_keeps_its_promises(page: ModuleType) -> None:
     with pytest.raises(InputError, match="absent"):
         acme.read_file("absent.acme")
     assert page.Elbow(True).mismatch(page.Elbow(False)) == 1.0
+
+
+def test_the_special_motions_of_the_page_drive(page: ModuleType) -> None:
+    language = page.Language()
+    language.grammar = page.Special
+    point = "POSE P[2] 400 0 300 180 0 90\n"
+    text = f"{point}RAISED 50 MOVEL P[2] 200 STOP\nLIFT 10\n"
+    raised, lifted = language.read(text, "a.acme", ReadOptions()).moves
+    heights = [move.target.pose.position[2] for move in (raised, lifted)]
+    assert heights == pytest.approx([0.35, 0.36])
+    with pytest.raises(SourceError, match="no pose that the text states"):
+        language.read(f"{point}LIFT 10\n", "a.acme", ReadOptions())
 
 
 def test_the_language_of_the_page_is_that_of_the_skeleton() -> None:

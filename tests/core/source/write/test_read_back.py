@@ -14,6 +14,7 @@ from flyby.core.language import Sources
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import Opaque
 from flyby.core.program.program import Program
+from flyby.core.read_back import check_alone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.vendor import Vendor
 
@@ -195,3 +196,20 @@ class Garbled:
 
     def write(self, program: Program, robot: Any, options: Any) -> Sources:
         return {f"m{suffix}": ")" for suffix in (".mod", ".src", ".script")}
+
+
+@pytest.mark.parametrize(("kept", "comments"), [(False, False), (True, False), (True, True)])
+def test_comments_are_offered_where_they_would_help(kept: bool, comments: bool) -> None:
+    vendor, robot = find_vendor("abb"), find_robot(ROBOTS["abb"])
+    text = (
+        f"MODULE m\nPROC main()\nMoveAbsJ {HOME},v500,fine,tool0;\nSetDO x,1;\nENDPROC\nENDMODULE\n"
+    )
+    program = vendor.read(text, "m.mod")
+    if not kept:
+        program = replace(program, statements=program.moves)
+    other = {"m.mod": text.replace("30,0]", "40,0]")}
+    assert vendor.reader is not None
+    with pytest.raises(MotionError) as caught:
+        check_alone(program, robot, other, vendor.reader, (".mod",), comments=comments)
+    assert ("make kept statements comments" in str(caught.value)) == (kept and not comments)
+    assert "patch the program's own files" in str(caught.value)
