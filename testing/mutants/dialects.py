@@ -11,6 +11,7 @@ from ...core.dialect import Dialect, MoveWords, Orientation, Wording
 from ...core.program.signal import Level, SetSignal, SignalAction, WaitSignal
 from ...core.program.speed import Speed
 from ...core.program.zone import ContourFraction
+from ...core.source.lines.language import LineLanguage
 from ...core.vendor import Vendor
 from ..checks.subject import Subject
 from .mutant import Mutant, has, is_searched, knows_signals, names_targets, sets_outputs, speaks
@@ -116,9 +117,14 @@ def _wording(change: Callable[[Wording], Wording]) -> Plant:
     return _spoken(changed)
 
 
-def _paced_by_a_speed(suite: Subject) -> bool:
-    """Where shares pace joint moves, all of the speed is the default and may be left out."""
-    return speaks(suite) and getattr(suite.vendor.speaks, "pace", "") != "joint_fraction"
+def _needs_a_speed(suite: Subject) -> bool:
+    """Whether what is left out becomes a default: not of shares, which are all of the speed then,
+    nor of lines where their reader leaves the speed open."""
+    spoken = suite.vendor.speaks
+    if spoken is None:
+        return False
+    defaults = isinstance(suite.vendor.reader, LineLanguage) and "tcp" in spoken.line.needs
+    return spoken.pace != "joint_fraction" or defaults
 
 
 def _other_orientation(spoken: Dialect) -> Dialect:
@@ -170,7 +176,7 @@ MUTANTS = (
         "no speed said to be needed",
         _moves(lambda words: replace(words, needs=frozenset())),
         ("test_speeds_that_are_not_needed_may_be_left_out",),
-        _paced_by_a_speed,
+        _needs_a_speed,
     ),
     Mutant(
         "lengths said in another unit",
