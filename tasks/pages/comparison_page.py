@@ -114,7 +114,7 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
     rows = slice(None, None, max(1, len(found.t) // _MOST))
     t = found.t[rows] - aligned.offset
     late = 1e3 * _late(t, aligned.time[rows])
-    path = 1e3 * found.path[rows]
+    path = np.round(1e3 * found.path[rows], 3)
     speed = 1e3 * _speed(found.t, found.tcp)[rows]
     values = np.column_stack(
         [compared.log.q[aligned.rows][rows], found.tcp[rows], path, late, speed]

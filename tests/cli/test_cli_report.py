@@ -144,7 +144,7 @@ def test_compare(flyby: Flyby, tmp_path: Path, log: Path) -> None:  # noqa: F811
     found = page(flyby, tmp_path, "compare", SQUARE, log, "--robot", ROBOT)
     emulated, measured = found["tracks"]
     assert (emulated["name"], measured["name"], measured["ghost"]) == ("emulated", "measured", True)
-    assert {channel["chart"] for channel in measured["channels"]} == {"apart", "late"}
+    assert {channel["chart"] for channel in measured["channels"]} == {"apart", "late", "speed"}
     assert found["charts"][0]["key"] == "apart"
 
 

@@ -133,7 +133,8 @@ export class TablePane {
     const at = this.at;
     const made = this.tables.flatMap((table, k) => {
       this.open(k);
-      return [h("h2", {}, table.title), ...[...this.body.childNodes].map((node) => node.cloneNode(true))];
+      const said = table.note ? [h("p", {}, table.note)] : [];
+      return [h("h2", {}, table.title), ...said, ...[...this.body.childNodes].map((node) => node.cloneNode(true))];
     });
     this.open(at);
     return made;
@@ -145,7 +146,7 @@ export class TablePane {
       const column = table.columns[k];
       if (typeof cell === "number") {
         const td = h("td", { class: "right" }, number(cell, column.digits ?? 0));
-        if (column.bar) {
+        if (column.bar && cell >= 0.5 * 10 ** -(column.digits ?? 0)) {
           const share = (100 * Math.max(cell, 0)) / most[k];
           td.classList.add("barred");
           td.style.setProperty("--share", `${share.toFixed(1)}%`);
