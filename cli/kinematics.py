@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..tasks.catalogue import registry, vendor_of
+from ..tasks import catalogue
 from ..tasks.options import texts
 from ..tasks.options.texts import fixed
 from .output.console import print_json, print_rich, print_table, warn
@@ -19,7 +19,19 @@ if TYPE_CHECKING:
     from ..core.robot.model import Robot
     from ..core.spatial.pose import Pose
 
-RobotName = Annotated[str, typer.Argument(help="Robot, such as abb/irb6640-180-255.")]
+RobotName = Annotated[
+    str,
+    typer.Argument(
+        help="Robot, such as abb/irb6640-180-255, or its file: a catalogue file, a URDF, a KUKA's "
+        "$machine.dat."
+    ),
+]
+VendorName = Annotated[
+    str | None,
+    typer.Option(
+        "--vendor", help="Whose controller drives the robot, where its file does not say."
+    ),
+]
 ToolPose = Annotated[
     str | None,
     typer.Option(
@@ -33,14 +45,15 @@ def fk(
     robot: RobotName,
     joints: Annotated[str, typer.Argument(help="Joint values in degrees: q1,q2,…")],
     tool: ToolPose = None,
+    vendor: VendorName = None,
     json: AsJson = False,
 ) -> None:
     """Forward kinematics: the TCP in the robot's base, and the configuration's name."""
-    arm = registry().find_robot(robot)
+    arm = catalogue.robot(robot, vendor)
     q = texts.configuration(joints, "joint values", arm)
     _warn_beyond_limits(arm, q)
     tcp = arm.flange_pose(q) @ _tool(tool)
-    label = _label(robot, arm, q)
+    label = _label(arm, q)
     if json:
         print_json(
             {
@@ -70,13 +83,14 @@ def ik(
         ),
     ],
     tool: ToolPose = None,
+    vendor: VendorName = None,
     json: AsJson = False,
 ) -> None:
     """Inverse kinematics: all configurations within limits that reach a pose."""
-    arm = registry().find_robot(robot)
+    arm = catalogue.robot(robot, vendor)
     flange = texts.pose(pose, "pose") @ _tool(tool).inverse()
     solutions = arm.inverse(flange)
-    labels = [_label(robot, arm, tuple(map(float, s.q))) for s in solutions]
+    labels = [_label(arm, tuple(map(float, s.q))) for s in solutions]
     if arm.arm_size != 6 or arm.recognised is None:
         warn(f"the solutions of {arm.name} are found by search: there may be others")
     if json:
@@ -111,10 +125,10 @@ def _tool(text: str | None) -> Pose:
     return IDENTITY if text is None else texts.pose(text, "--tool")
 
 
-def _label(name: str, robot: Robot, q: tuple[float, ...]) -> Configuration | None:
+def _label(robot: Robot, q: tuple[float, ...]) -> Configuration | None:
     import numpy as np
 
-    return vendor_of(name).label(robot, np.array(q))
+    return catalogue.driver_of(robot).label(robot, np.array(q))
 
 
 def _label_json(label: Configuration | None) -> dict[str, Any] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,6 +25,24 @@ def degrees(q: Sequence[float]) -> str:
 
 def run(*words: str) -> Result:
     return CliRunner().invoke(app, list(words))
+
+
+def test_robots_of_files(tmp_path: Path) -> None:
+    """As wherever a robot is named: here a URDF, whose driver is said beside it."""
+    turns = [(i, axis) for i, axis in enumerate(("0 0 1", "0 1 0", "0 1 0", "1 0 0"), 1)]
+    turns += [(5, "0 1 0"), (6, "1 0 0")]
+    text = "".join(
+        f'<link name="l{i}"/><joint name="j{i}" type="revolute"><parent link="l{i - 1}"/>'
+        f'<child link="l{i}"/><origin xyz="{0.1 * (i > 3)} 0 0.2"/><axis xyz="{axis}"/>'
+        '<limit lower="-3" upper="3" velocity="3" effort="9"/></joint>'
+        for i, axis in turns
+    )
+    path = tmp_path / "arm.urdf"
+    path.write_text(f'<robot name="arm"><link name="l0"/>{text}</robot>', "utf-8")
+    found = run("fk", str(path), "0,0,0,0,0,0", "--vendor", "abb", "--json")
+    assert found.exit_code == 0, found.output
+    assert json.loads(found.stdout)["position_m"] == pytest.approx([0.3, 0.0, 1.2])
+    assert "--vendor" in run("fk", str(path), "0,0,0,0,0,0").output
 
 
 @settings(max_examples=25, deadline=None)
