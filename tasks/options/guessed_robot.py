@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 
 from ...core.door import spelt
 from ...core.errors import EntryError, FlybyError, InputError, Note
+from ...core.files.reading import read_bytes
 from ...core.program.entry_point import ALL
+from ...core.source.text.files import LARGEST_FILE
 from ..catalogue import registry
 from ..fitting import said_to_fit
 from ..read import SourceOptions, backup_in, read_undriven, read_with, surrounding
@@ -77,6 +79,9 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
     program: Program | None = None
     try:
         vendor = registry().reader_of(path)
+    except FlybyError:
+        return None  # what reads it says why
+    try:
         program, options = _undriven(source, options)
     except FlybyError:
         if not path.is_file():
@@ -160,7 +165,7 @@ def _mentioned(
     reading = None if program is None else program.reading
     texts = [file.text for file in reading.files.values()] if isinstance(reading, Reading) else []
     if not texts:
-        texts = [path.read_text("utf-8", "replace")]
+        texts = [read_bytes(path, LARGEST_FILE).decode("utf-8", "replace")]
     folders = path.resolve().parts[-_FOLDERS - 1 : -1]
     makes = sorted({make[0] for arm in arms if (make := re.match(r"[A-Z]+", arm.model))})
     name = re.compile(

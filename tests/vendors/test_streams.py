@@ -127,7 +127,8 @@ end
 IN_A_THREAD = """def demo():
   thread follow():
     while True:
-      speedj([0.1,0,0,0,0,0], 1.0, 0.01)
+      v = socket_read_ascii_float(6)
+      speedj([v[1], v[2], v[3], v[4], v[5], v[6]], 1.0, 0.01)
     end
   end
   run follow()

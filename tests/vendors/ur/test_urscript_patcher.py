@@ -189,7 +189,7 @@ OWN_CASES: list[Any] = [
 def test_literals_of_their_own(
     text: str, changes: dict[int, Change], options: dict[str, str], expected: str
 ) -> None:
-    with pytest.raises(FlybyError, match=r"own=True|must be changed for all"):
+    with pytest.raises(FlybyError, match=r"own=True|must be changed for all|change both"):
         patched(text, changes)
     assert patched(text, changes, **options) == expected
 
