@@ -1,7 +1,7 @@
 """Which moment of an emulated motion each sample of a log belongs to, by place alone.
 
-The match runs forward only: a path that crosses itself or goes back the way it came is matched in
-its order. Time plays no part, so a slow or late log matches as well as a punctual one.
+The match runs forward: a path that crosses itself or goes back the way it came is matched in its
+order. Time plays no part, so a slow or late log matches as well as a punctual one.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from ..core.arrays import FloatArray, IntArray
 
 COARSE = 800
 """Steps of the path, and at most about as many of the log, that the forward match looks at."""
+_BRANCHES = 4
+"""Stretches of the path near a sample, of which one is chosen."""
 _MOST_ROWS, _MOST_CELLS = 512, 100_000
 """Samples, and pairs of a sample and a segment, that are looked at together; bounds the memory."""
 
@@ -87,9 +89,12 @@ class _Polyline:
         return np.stack([np.interp(arc, self.arc, column) for column in self.q.T], axis=-1)
 
     def nearest(self, q: FloatArray, first: IntArray, last: IntArray) -> Match:
-        """The nearest point to each sample (T, N) between two vertices."""
+        """The nearest point to each sample (T, N) between two vertices, in the order of the path:
+        where it goes back the way it came, place alone says no more than that it is on either way.
+        """
         last = np.maximum(last, first + 1)
-        segment, share = np.empty(len(q), dtype=np.int64), np.empty(len(q))
+        shape = len(q), _BRANCHES
+        segment, share, away = np.empty(shape, dtype=np.int64), np.empty(shape), np.empty(shape)
         # Windows of like width together, so that few of them are padded.
         order = np.argsort(last - first)
         begin = 0
@@ -97,27 +102,74 @@ class _Polyline:
             ahead = order[begin : begin + _MOST_ROWS]
             count = max(1, _MOST_CELLS // int((last - first)[ahead].max()))
             rows = ahead[:count]
-            segment[rows], share[rows] = self._project(q[rows], first[rows], last[rows])
+            segment[rows], share[rows], away[rows] = self._project(q[rows], first[rows], last[rows])
             begin += len(rows)
-        time = (1 - share) * self.t[segment] + share * self.t[segment + 1]
         arc = (1 - share) * self.arc[segment] + share * self.arc[segment + 1]
+        chosen = np.arange(len(q)), _in_order(arc, away)
+        segment, share = segment[chosen], share[chosen]
+        time = (1 - share) * self.t[segment] + share * self.t[segment + 1]
         place = (1 - share)[:, None] * self.q[segment] + share[:, None] * self.q[segment + 1]
-        return Match(time, arc, q - place, float(self.arc[-1]))
+        return Match(time, arc[chosen], q - place, float(self.arc[-1]))
 
     def _project(
         self, q: FloatArray, first: IntArray, last: IntArray
-    ) -> tuple[IntArray, FloatArray]:
-        """Segment (R,) and share of it (R,) of the nearest point to each sample (R, N)."""
-        width = int((last - first).max())
+    ) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Segment, share of it and squared distance (R, B) of the points that are nearer to a
+        sample (R, N) than those before and behind, the nearest first; infinitely far where there
+        are no more."""
+        width = max(int((last - first).max()), _BRANCHES)
         segment = np.minimum(first[:, None] + np.arange(width), (last - 1)[:, None])
         begin = self.q[segment]
         step, away = self.q[segment + 1] - begin, q[:, None, :] - begin
         share = np.sum(away * step, axis=2) / np.sum(step * step, axis=2)
         share = np.clip(share, 0.0, 1.0)
         rest = away - share[:, :, None] * step
-        best = np.argmin(np.sum(rest * rest, axis=2), axis=1)
-        rows = np.arange(len(q))
-        return segment[rows, best], share[rows, best]
+        square = np.sum(rest * rest, axis=2)
+        edge = np.full((len(q), 1), np.inf)
+        before, behind = np.hstack([edge, square[:, :-1]]), np.hstack([square[:, 1:], edge])
+        square = np.where((square < before) & (square <= behind), square, np.inf)
+        best = np.argsort(square, axis=1)[:, :_BRANCHES]
+        rows = np.arange(len(q))[:, None]
+        return segment[rows, best], share[rows, best], square[rows, best]
+
+
+def _in_order(arc: FloatArray, square: FloatArray) -> IntArray:
+    """Which of its candidates (T, B) each sample is taken for.
+
+    As far as it is behind where the robot has been already, a candidate counts as off the path.
+
+    Args:
+        arc: rad (m), where on the path they are.
+        square: their squared distances from the sample, the least first, infinite where there are
+            no more.
+    """
+    chosen = np.zeros(len(arc), dtype=np.int64)
+    several = np.append(np.isfinite(square[:, 1]), False)
+    edges = np.flatnonzero(np.diff(several, prepend=False))
+    done, reached = 0, -np.inf
+    for first, stop in zip(edges[::2], edges[1::2], strict=True):
+        reached = max(reached, arc[done:first, 0].max(initial=-np.inf))
+        done = min(stop + 1, len(arc))  # The sample behind has one candidate, which decides.
+        chosen[first:done] = _best_way(arc[first:done], square[first:done], reached)
+        reached = max(reached, arc[first:done][np.arange(done - first), chosen[first:done]].max())
+    return chosen
+
+
+def _best_way(arc: FloatArray, square: FloatArray, reached: float) -> IntArray:
+    """A candidate (T,) of each sample, such that squares add up to the least (Viterbi)."""
+    rows, each = np.empty(arc.shape, dtype=np.int64), np.arange(arc.shape[1])
+    total, top = np.zeros(arc.shape[1]), np.full(arc.shape[1], reached)
+    for k, at in enumerate(arc):
+        through = total[:, None] + np.maximum(top[:, None] - at, 0.0) ** 2
+        rows[k] = through.argmin(axis=0)
+        total = through[rows[k], each] + square[k]
+        top = np.maximum(top[rows[k]], at)
+    chosen = np.empty(len(arc), dtype=np.int64)
+    at_last = int(np.argmin(total))
+    for k in range(len(arc) - 1, -1, -1):
+        chosen[k] = at_last
+        at_last = int(rows[k, at_last])
+    return chosen
 
 
 def _spaced(q: FloatArray, step: float) -> IntArray:

@@ -13,9 +13,6 @@ _AWAY = 1e-3
 """rad (m) from where a robot stands at which it counts as gone."""
 _STANDS = 0.02
 """s until it is gone from which on it stood."""
-_NEAR = 0.15
-"""s about a stop in which the samples at it are looked for: on a way back along the way there,
-places do not tell which of the two a sample is on."""
 
 
 @dataclass(frozen=True)
@@ -48,20 +45,15 @@ def move_times(compared: Prediction) -> list[MoveTime]:
     clock play no part in where moves begin.
     """
     driven, aligned, found = compared.driven.trajectory, compared.alignment, compared.residuals
-    q = compared.log.q[aligned.rows]
+    passed = _rising(aligned.time, found.t)
     starts = np.flatnonzero(np.diff(driven.move, prepend=driven.move[0] - 1))
     bounds, logged = [float(aligned.time[0])], [float(found.t[0])]
     for row in starts[1:]:
         left = _leaves(driven.t, driven.q_motor, int(row))
-        near = np.abs(aligned.time - driven.t[row]) <= left - driven.t[row] + _NEAR
-        if left - driven.t[row] > _STANDS and near.any():
-            off = np.where(near, np.abs(q - driven.q_motor[row]).max(axis=1), np.inf)
-            at = _leaves(found.t, q, int(np.argmin(off)))
-        else:
+        if left - driven.t[row] <= _STANDS:
             left = float(driven.t[row])
-            at = float(np.interp(left, *_rising(aligned.time, found.t)))
         bounds.append(float(np.clip(left, bounds[-1], aligned.time[-1])))
-        logged.append(max(at, logged[-1]))
+        logged.append(max(float(np.interp(left, *passed)), logged[-1]))
     bounds.append(float(aligned.time[-1]))
     logged.append(float(found.t[-1]))
     times = []

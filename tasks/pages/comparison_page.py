@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import isotonic_regression
 
 from ...core.arrays import FloatArray
 from ...core.driving.driven_program import DrivenProgram
@@ -45,8 +44,6 @@ _MEETINGS = 400
 """Places at which both are held together."""
 _WINDOW = 0.02
 """s over which the speed of a logged TCP is taken at least: its places are noisy."""
-_SURE = 2e-3
-"""s by which emulated times of samples may fall."""
 _MOVES = (
     PageColumn("#"),
     PageColumn("move"),
@@ -113,7 +110,7 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
     found, aligned = compared.residuals, compared.alignment
     rows = slice(None, None, max(1, len(found.t) // _MOST))
     t = found.t[rows] - aligned.offset
-    late = 1e3 * _late(t, aligned.time[rows])
+    late = 1e3 * (t - aligned.time[rows])
     path = np.round(1e3 * found.path[rows], 3)
     speed = 1e3 * _speed(found.t, found.tcp)[rows]
     values = np.column_stack(
@@ -152,15 +149,6 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
         tool=[one.name for one in draft.arms[-1].tools].index(tool),
         takes=aligned.logged_moving,
     )
-
-
-def _late(t: FloatArray, time: FloatArray) -> FloatArray:
-    """(K,) s that samples are behind: about stops from which the robot goes back the way it came,
-    their places may be taken for those of either way, and what is known before and behind counts.
-    """
-    rising = isotonic_regression(time).x
-    known = np.abs(time - rising) < _SURE
-    return np.asarray(np.interp(t, t[known], (t - time)[known])) if known.any() else t - time
 
 
 def _from_zero(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -127,6 +127,30 @@ def test_samples_of_a_path_lie_on_it_in_order(seed, count) -> None:
     assert found.length == pytest.approx(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
 
 
+@settings(max_examples=30, deadline=None)
+@given(
+    seed=st.integers(0, 10**6),
+    noise=st.floats(0.0, 1e-4),
+    apart=st.floats(-1e-4, 1e-4),
+    rest=st.integers(0, 60),
+)
+def test_a_way_back_is_told_from_the_way_there(
+    seed: int, noise: float, apart: float, rest: int
+) -> None:
+    """By the order alone: noise, and a robot that is a little off the path, are more than what the
+    two ways lie apart."""
+    t = np.linspace(0.0, 4.0, 2001)
+    course = 0.5 - 0.5 * np.cos(np.pi * t)  # there, back, there, back
+    path = course[:, None] * np.array([1.0, -0.4, 0.2])
+    stamps = np.linspace(0.0, 4.0, 701)
+    stamps = np.insert(stamps, 200, np.full(rest, stamps[200]))  # it stands somewhere
+    q = np.column_stack([np.interp(stamps, t, column) for column in path.T])
+    q += noise * np.random.default_rng(seed).normal(size=q.shape) + apart * np.array([0.4, 1.0, 0])
+    found = match(t, path, q)
+    moving = np.abs(np.sin(np.pi * stamps)) > 0.1
+    assert np.abs(found.time - stamps)[moving].max() < 2e-3
+
+
 # What does not belong
 
 

@@ -33,7 +33,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
 def test_each_move_takes_what_it_took(found: Comparison) -> None:
     moves = found.moves
     assert [one.move for one in moves] == list(range(1, 14))
-    # Stops are found within a sample, whichever of both ways places were taken for.
+    # Stops are found within a sample.
     at = np.cumsum([one.emulated for one in moves])
     slower = SHARE * (np.clip(at, BEGIN, END) - BEGIN)
     meant = np.diff(slower, prepend=0.0)
