@@ -31,25 +31,38 @@ def move_differences(
         before, after: its moves in the order of execution.
     """
     before, after = _once(before), _once(after)
+    for olds, news, together in _stretches(before, after):
+        if together:
+            for a, c in zip(olds, news, strict=True):
+                yield from _changed(_called(routine, c + 1), before[a], after[c])
+            continue
+        for k in olds:
+            text, name = move_text(before[k]), _called(routine, k + 1)
+            yield Difference(Differing.MOVE, name, text, "", span=before[k].statement)
+        for k in news:
+            text, name = move_text(after[k]), _called(routine, k + 1)
+            yield Difference(Differing.MOVE, name, "", text, span=after[k].statement)
+
+
+def move_pairs(before: Sequence[Move], after: Sequence[Move]) -> list[tuple[int, int]]:
+    """Indices of moves that belong together on both sides, both rising: see `move_differences`."""
+    return [
+        pair
+        for olds, news, together in _stretches(before, after)
+        if together
+        for pair in zip(olds, news, strict=True)
+    ]
+
+
+def _stretches(
+    before: Sequence[Move], after: Sequence[Move]
+) -> Iterator[tuple[range, range, bool]]:
+    """Indices of moves in a row on both sides, and whether they belong together one by one."""
     keys = [[move_key(move) for move in side] for side in (before, after)]
     matcher = SequenceMatcher(None, keys[0], keys[1], autojunk=False)
     for what, a, b, c, d in matcher.get_opcodes():
-        if what == "equal":
-            pairs = list(zip(before[a:b], after[c:d], strict=True))
-            for k, (old, new) in enumerate(pairs, c + 1):
-                yield from _changed(_called(routine, k), old, new)
-            continue
-        olds, news = list(before[a:b]), list(after[c:d])
-        if len(olds) == len(news) and all(map(_same_kind, olds, news)):
-            for k, (old, new) in enumerate(zip(olds, news, strict=True), c + 1):
-                yield from _changed(_called(routine, k), old, new)
-            continue
-        for k, old in enumerate(olds, a + 1):
-            text = move_text(old)
-            yield Difference(Differing.MOVE, _called(routine, k), text, "", span=old.statement)
-        for k, new in enumerate(news, c + 1):
-            text = move_text(new)
-            yield Difference(Differing.MOVE, _called(routine, k), "", text, span=new.statement)
+        alike = b - a == d - c and all(map(_same_kind, before[a:b], after[c:d]))
+        yield range(a, b), range(c, d), what == "equal" or alike
 
 
 def _once(moves: Sequence[Move]) -> list[Move]:

@@ -57,15 +57,32 @@ def turn_by_clocks(
         schedules: likewise.
         apart: s by which the clocks may be off against each other.
     """
-    times, statement = _Times.of(hand_over, *runs), hand_over.released.statement
+    times = _Times.of(hand_over, *runs)
     giver, taker = schedules
     reached = _passed(giver, times.given.reached, -1) + giver.lag
-    let_go = _passed(giver, times.given.at, statement)
-    taken = _passed(taker, times.taken.at, hand_over.taken.statement)
+    let_go, taken = hand_over_times(hand_over, runs, schedules)
     return InTurn(
         held=bool(taken + apart <= let_go),
         brought=bool(reached + apart <= taker.clocked(np.full((1, 2), times.comes.left))[0, 1]),
         let_go=bool(let_go + apart <= taker.clocked(np.full((1, 2), times.taken.left))[0, 1]),
+    )
+
+
+def hand_over_times(
+    hand_over: FollowedHandOver, runs: tuple[Run, Run], schedules: tuple[Schedule, Schedule]
+) -> tuple[float, float]:
+    """When the giver lets go of a part and the taker takes it, s on the station's clock; infinite
+    for what never happens.
+
+    Args:
+        hand_over: of the two.
+        runs: of giver and taker.
+        schedules: likewise.
+    """
+    times = _Times.of(hand_over, *runs)
+    return (
+        _passed(schedules[0], times.given.at, hand_over.released.statement),
+        _passed(schedules[1], times.taken.at, hand_over.taken.statement),
     )
 
 

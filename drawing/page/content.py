@@ -242,8 +242,6 @@ class Page:
         coat: paint.
         front: to pick from.
         gantt: who does what when, a row each, where several robots share one clock.
-        together: times at which tracks pass the same waypoint, s, a row a waypoint and a column a
-            track; None where tracks run by the clock alone.
         notes: sentences that the reader should not miss.
         chosen: index of the track that is shown first; -1 for the last one that is no ghost.
         made_by: the program's name and version.
@@ -261,7 +259,6 @@ class Page:
     coat: PageCoat | None = None
     front: PageFront | None = None
     gantt: Sequence[PageBars] = ()
-    together: Quantised | None = None
     notes: Sequence[str] = ()
     chosen: int = -1
     made_by: str = ""

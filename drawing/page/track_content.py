@@ -200,11 +200,15 @@ class PagePart:
         name: of it.
         shape: index of the body that is drawn for it.
         places: from move to move.
+        begins, ends: s between which it is this arm's; None for all the time. Before, and from
+            then on, it is another's.
     """
 
     name: str
     shape: int
     places: Sequence[PagePlace]
+    begins: float | None = None
+    ends: float | None = None
 
 
 @dataclass(frozen=True)
@@ -250,6 +254,8 @@ class PageTrack:
         tool: index of the tool among the arm's where there are no moves.
         takes: s that are said beside its name where these are not its duration; None where they
             are.
+        meets: (W,) s, never falling, at which it is where the others of its group are at theirs;
+            None where they run by the clock alone.
     """
 
     name: str
@@ -269,3 +275,4 @@ class PageTrack:
     group: str = ""
     tool: int = 0
     takes: float | None = None
+    meets: Quantised | None = None

@@ -17,7 +17,6 @@ from ...drawing.page.content import (
     PageTable,
 )
 from ...drawing.page.curves import CHARTS, SPEED, Curve
-from ...drawing.page.packing import Quantised
 from ...drawing.page.track_content import (
     PageChart,
     PageTrack,
@@ -64,6 +63,7 @@ def comparison_page(found: Comparison) -> Page:
     draft.drive([run], cell_of(run), ["emulated"])
     draft.tracks[-1] = replace(draft.tracks[-1], takes=compared.alignment.moving)
     draft.tracks.append(measured_track(compared, draft))
+    draft.meet(0, meetings(compared))
     tables = [
         _moves(found, run, draft),
         _figures(found),
@@ -81,7 +81,6 @@ def comparison_page(found: Comparison) -> Page:
         draft.files(),
         tables,
         CHARTS_OF_LOGS,
-        together=_meetings(compared),
         made_by=made_by(),
     )
 
@@ -168,13 +167,13 @@ def _speed(t: FloatArray, tcp: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.norm(tcp[behind] - tcp[before], axis=1) / spans)
 
 
-def _meetings(compared: Prediction) -> Quantised:
-    """When the emulation is where the log was: rows of both tracks' times."""
+def meetings(compared: Prediction) -> FloatArray:
+    """When the emulation is where the log was: (W, 2) s, of both tracks."""
     found, aligned = compared.residuals, compared.alignment
     rows = np.unique(np.linspace(0, len(found.t) - 1, _MEETINGS).round().astype(np.int64))
     emulated = np.maximum.accumulate(aligned.time[rows])
     logged = np.maximum(found.t[rows] - aligned.offset, 0.0)
-    return Quantised(np.column_stack([emulated, logged]), 1e-4)
+    return np.column_stack([emulated, logged])
 
 
 def _moves(found: Comparison, run: Run, draft: PageDraft) -> PageTable:

@@ -15,7 +15,8 @@ from ...drawing.page.content import (
 )
 from ...drawing.page.curves import CHARTS
 from ..diff.comparing import StateDifference
-from .program_tables import moves_table
+from .meetings import differing_times
+from .program_tables import moves_table, page_shares, time_tables
 from .run_page import PageDraft, cell_of, made_by
 
 if TYPE_CHECKING:
@@ -60,21 +61,28 @@ def difference_page(found: StateDifference) -> Page:
         tracks[name] = len(draft.tracks)
         sides = ["before", "after"] if len(runs) == 2 else [""]
         draft.drive(runs, cell_of(runs[-1]), sides, name)
+        if len(runs) == 2:
+            draft.meet(tracks[name], differing_times(*runs))
         shown += runs
     tables = [
         *([] if found.undriven else [_routines(found, tracks)]),
         _differences(found, draft),
         _faults(found),
         _files(found),
-        *(moves_table(run.report, draft.sources, k) for k, run in enumerate(shown)),
+        *(
+            table
+            for k, run in enumerate(shown)
+            for table in (
+                *time_tables(run, draft.sources, k),
+                moves_table(run.report, draft.sources, k),
+            )
+        ),
     ]
-    times = found.routines[0].times if found.routines else (None, None)
-    told = {} if None in times else {"cycle time": f"{times[0]:.3f} → {times[1]:.3f} s"}
     return Page(
         f"{found.before.name} → {found.after.name}",
         "diff",
-        {**told, "differences": str(len(found.differences))},
-        (),
+        _facts(found),
+        [s for k, run in enumerate(shown) for s in page_shares(run.program, run.report, k)],
         draft.arms,
         draft.tracks,
         draft.files(),
@@ -84,6 +92,17 @@ def difference_page(found: StateDifference) -> Page:
         chosen=_after(draft, next(iter(tracks), "")),
         made_by=made_by(),
     )
+
+
+def _facts(found: StateDifference) -> dict[str, str]:
+    """Figures at the top: times of the first routine where both sides drive it to its end."""
+    facts = {}
+    before, after = found.routines[0].times if found.routines else (None, None)
+    if before is not None and after is not None:
+        facts["cycle time"] = f"{before:.3f} → {after:.3f} s"
+        if before > 0.0:
+            facts["change"] = f"{100 * (after / before - 1):+.1f} %"
+    return {**facts, "differences": str(len(found.differences))}
 
 
 def _after(draft: PageDraft, routine: str) -> int:

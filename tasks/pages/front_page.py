@@ -16,6 +16,7 @@ from ..emulate import EmulateOptions, emulate_with
 from ..results.fronts import ProgramFront
 from ..results.runs import Run
 from ..setup import setup_of_program
+from .meetings import meeting_times
 from .program_tables import moves_table, time_tables
 from .run_page import PageDraft, made_by
 
@@ -44,6 +45,7 @@ def front_page(made: ProgramFront) -> Page:
     draft = PageDraft()
     shown = [name for name, track in zip(names, tracks, strict=True) if track >= 0]
     draft.drive(runs, setup.surroundings(programs[0]), shown, ghosts=1)
+    draft.meet(0, meeting_times(runs))
     points = [made.given, *made.points]
     for point, track, run in zip(points, tracks, _spread(runs, tracks), strict=True):
         if point.certificate is not None and run is not None:

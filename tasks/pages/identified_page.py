@@ -20,7 +20,8 @@ from ...identification.report.corners import cut_corners
 from ...identification.residuals import Figures
 from ..results.identified import IdentifiedModel
 from ..results.runs import Run
-from .comparison_page import CHARTS_OF_LOGS, measured_track
+from .comparison_page import CHARTS_OF_LOGS, measured_track, meetings
+from .meetings import meeting_times
 from .run_page import PageDraft, made_by
 
 MOST = 24
@@ -129,6 +130,10 @@ def _drive(draft: PageDraft, one: Outcome) -> None:
     for k, found in enumerate((one.before, one.after), len(draft.tracks) - len(runs)):
         draft.tracks[k] = replace(draft.tracks[k], takes=found.alignment.moving)
     draft.tracks.append(measured_track(one.after, draft, name))
+    before, after = meeting_times(runs).T
+    emulated, logged = meetings(one.after).T
+    met = np.column_stack([np.interp(emulated, after, before), emulated, logged])
+    draft.meet(len(draft.tracks) - 3, met)
 
 
 def _parameters(made: IdentifiedModel) -> list[PageRow]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
+from ...core.arrays import FloatArray
 from ...core.display import counted
 from ...core.errors import FlybyError, Span
 from ...core.program.tool import Tool, WorkObject
@@ -20,6 +21,7 @@ from ...drawing.page.content import (
 )
 from ...drawing.page.curves import CHARTS
 from ...drawing.page.nearness import page_clearance
+from ...drawing.page.packing import Quantised
 from ...drawing.page.parts import with_parts
 from ...drawing.page.track_content import (
     PageClearance,
@@ -134,6 +136,16 @@ class PageDraft:
                 group=group,
             )
         )
+
+    def meet(self, first: int, times: FloatArray) -> None:
+        """Say when tracks are at the same places.
+
+        Args:
+            first: index of the first of R tracks.
+            times: (W, R) s, of each its own, never falling.
+        """
+        for track, own in enumerate(times.T, first):
+            self.tracks[track] = replace(self.tracks[track], meets=Quantised(own, 1e-4))
 
     def prove(self, track: int, proof: Certificate, run: Run, cell: Cell) -> None:
         """Lay the proof of a run on its track."""

@@ -20,9 +20,9 @@ from ...problems.improve.solution import Solution
 from ..emulate import EmulateOptions, emulate_with
 from ..results.report import target_text
 from ..setup import setup_of_program
+from .meetings import meeting_times
 from .program_tables import moves_table, notes_rows, page_shares, time_tables
 from .run_page import PageDraft, made_by
-from .together import meeting_times
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
@@ -68,6 +68,7 @@ def solution_page(made: Solution, cell: Cell | None = None) -> Page:
         runs.append(emulate_with(made.program, EmulateOptions()))
     draft = PageDraft()
     draft.drive(runs, cell, [BEFORE, AFTER] if made.changed else [""])
+    draft.meet(0, meeting_times(runs))
     if made.certificate is not None:
         draft.prove(len(runs) - 1, made.certificate, runs[-1], cell)
     last = runs[-1]
@@ -87,7 +88,6 @@ def solution_page(made: Solution, cell: Cell | None = None) -> Page:
         draft.files(),
         tables,
         CHARTS,
-        together=meeting_times(runs),
         made_by=made_by(),
     )
 

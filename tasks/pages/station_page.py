@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
 from pathlib import PurePath
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,9 +14,13 @@ from ...core.arrays import FloatArray, IntArray
 from ...core.display import counted
 from ...core.driving.driven_program import DrivenProgram
 from ...core.errors import Span
+from ...core.program.move import Opaque, Statement, Wait
 from ...core.program.signal import Meet
 from ...core.station.clearances import StationProver
 from ...core.station.clock import Schedule, Spell
+from ...core.station.hand_over import follow_hand_overs
+from ...core.station.station import HandOver
+from ...core.station.turns import hand_over_times
 from ...drawing.page.content import (
     Page,
     PageBar,
@@ -54,6 +59,15 @@ _WAITS = (
     PageColumn("statement"),
     PageColumn("line"),
 )
+_HAND_OVERS = (
+    PageColumn("part"),
+    PageColumn("from"),
+    PageColumn("lets go", "s", 3),
+    PageColumn("line"),
+    PageColumn("to"),
+    PageColumn("takes it", "s", 3),
+    PageColumn("line"),
+)
 _SAVINGS = (
     PageColumn("station quicker", "s", 3, bar=True),
     PageColumn("robot"),
@@ -87,6 +101,7 @@ class StationPage:
         self.last = _until(made)
         self.clocks: list[OtherClock] = []
         self.runs: list[Run] = []
+        self.handed: list[_Handed] = []
 
     def page(self) -> Page:
         made, draft = self.made, self.draft
@@ -108,6 +123,7 @@ class StationPage:
             draft.tracks[-1] = replace(track, flags=flags)
             self.clocks.append(clock)
             self.runs.append(run)
+        self._hand_over()
         if self.distances:
             self._distances(grid)
         charts = [PageChart(BETWEEN, "Distance between robots", "mm"), *CHARTS]
@@ -136,6 +152,36 @@ class StationPage:
         source, line = self.draft.sources.place(track, spell.action.span)
         end = min(spell.end, self.last)
         return PageFlag("wait", _waits_for(spell), spell.begin, end - spell.begin, source, line)
+
+    def _hand_over(self) -> None:
+        """Parts are drawn where their givers have them until their takers do."""
+        schedules, members = self.made.run.schedules, self.made.station.members
+        names = list(members)
+        for found in follow_hand_overs(self.made.station).followed:
+            told = found.declared
+            both = told.giver, told.taker
+            runs = members[told.giver].run, members[told.taker].run
+            times = hand_over_times(found, runs, (schedules[both[0]], schedules[both[1]]))
+            taken = min(times[1], self.last)
+            giver, taker = names.index(told.giver), names.index(told.taker)
+            self._own(giver, told.given, ends=taken)
+            self._own(taker, told.taken, begins=taken)
+            changes = zip(runs, (found.released, found.taken), strict=True)
+            spans = [_span(run.program.statements[one.statement]) for run, one in changes]
+            self.handed.append(_Handed(told, (giver, taker), times, (spans[0], spans[1])))
+
+    def _own(
+        self, track: int, name: str, begins: float | None = None, ends: float | None = None
+    ) -> None:
+        """Say from when, or until when, a part is a robot's."""
+        own = self.draft.tracks[track]
+        parts = [
+            replace(one, begins=begins or one.begins, ends=ends or one.ends)
+            if one.name == name
+            else one
+            for one in own.parts
+        ]
+        self.draft.tracks[track] = replace(own, parts=parts)
 
     def _distances(self, grid: FloatArray) -> None:
         """Curves of the distance of each two robots, on the tracks of both."""
@@ -268,6 +314,8 @@ class StationPage:
             rows.append(PageRow(cells, level, index, spell.begin, None, source, line))
         if rows:
             yield PageTable("Waits", _WAITS, rows)
+        if self.handed:
+            yield PageTable("Hand-overs", _HAND_OVERS, [self._handed_row(h) for h in self.handed])
         if made.clearances:
             yield self._pairs(names)
         if made.savings:
@@ -312,6 +360,17 @@ class StationPage:
             )
             yield PageRow(cells, "" if ends else "error", index, schedule.begin)
 
+    def _handed_row(self, handed: _Handed) -> PageRow:
+        cells: list[PageCell] = [handed.told.given]
+        told = (handed.told.giver, handed.told.taker), handed.times, handed.spans
+        for name, time, span in zip(*told, strict=True):
+            cells += [name, time if np.isfinite(time) else "never", _where(span)]
+        track = handed.tracks[1]
+        source, line = self.draft.sources.place(track, handed.spans[1])
+        happens = np.isfinite(handed.times).all()
+        time = float(min(handed.times[1], self.last))
+        return PageRow(cells, "" if happens else "error", track, time, None, source, line)
+
     def _pairs(self, names: list[str]) -> PageTable:
         columns = [
             PageColumn("robots"),
@@ -325,6 +384,22 @@ class StationPage:
             level = "error" if not made.keeps(pair) else "" if pair.safe else "warning"
             rows.append(PageRow(cells, level, names.index(pair.robots[0]), pair.least_at))
         return PageTable("Distances", columns, rows)
+
+
+class _Handed(NamedTuple):
+    """A part that changes hands, on the station's clock.
+
+    Args:
+        told: whose part it is.
+        tracks: of giver and taker.
+        times: s, when the giver lets go of it and the taker takes it.
+        spans: where these stand.
+    """
+
+    told: HandOver
+    tracks: tuple[int, int]
+    times: tuple[float, float]
+    spans: tuple[Span | None, Span | None]
 
 
 def _until(made: DrivenStation) -> float:
@@ -348,6 +423,11 @@ def _clock(schedule: Schedule, duration: float, last: float) -> OtherClock:
 def _waits_for(spell: Spell) -> str:
     how = " (gave up)" if spell.given_up else "" if np.isfinite(spell.end) else " (for ever)"
     return spell.action.text + how
+
+
+def _span(statement: Statement) -> Span | None:
+    """Where a statement stands; what takes a part or lets go of it is no move."""
+    return statement.span if isinstance(statement, Opaque | Wait) else None
 
 
 def _where(span: Span | None) -> str:

@@ -17,9 +17,9 @@ from ...drawing.page.curves import CHARTS
 from ..emulate import EmulateOptions, emulate_with
 from ..files.texts import read_again
 from ..setup import setup_of_program
+from .meetings import meeting_times
 from .program_tables import moves_table, page_shares, time_tables
 from .run_page import PageDraft, cell_of, fault_notes, made_by
-from .together import meeting_times
 
 if TYPE_CHECKING:
     from ...core.language import Sources
@@ -53,6 +53,7 @@ def translation_page(
         world = replace(arm.nodes[0], place=place.matrix())
         draft.arms[1] = replace(arm, nodes=[world, *arm.nodes[1:]])
     runs = [before, after]
+    draft.meet(0, meeting_times(runs))
     old, new = before.duration, after.duration
     lost = []
     for note in made.losses:
@@ -79,7 +80,6 @@ def translation_page(
         draft.files(),
         tables,
         CHARTS,
-        together=meeting_times(runs),
         notes=fault_notes(after),
         made_by=made_by(),
     )

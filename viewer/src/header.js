@@ -77,12 +77,13 @@ function choice(session) {
       ),
     );
     buttons.hidden = group.length < 2;
+    if (sync) sync.hidden = !session.meeting(session.track.group);
   };
+  const sync = session.meeting()
+    ? h("select", { "aria-label": "how tracks run together", onchange: () => session.synchronise(sync.value) },
+        h("option", { value: "clock" }, "one clock"), h("option", { value: "waypoints" }, "by waypoint"))
+    : null;
   session.on("track", mark);
   mark();
-  const sync = session.page.together
-    ? h("select", { "aria-label": "how tracks run together", onchange: () => session.synchronise(sync.value) },
-        h("option", { value: "clock" }, "one clock"), h("option", { value: "waypoints" }, "waypoint by waypoint"))
-    : null;
   return h("div", { class: "choice" }, list, buttons, sync);
 }

@@ -7,6 +7,7 @@ const KEYS = [
   ["space", "play, pause"],
   ["← →", "a step of 20 ms"],
   ["shift ← →", "the move before, the next"],
+  ["↑ ↓", "in the source: from driven line to driven line"],
   ["home, end", "beginning, end"],
   ["+ −", "faster, slower"],
   ["l", "loop"],

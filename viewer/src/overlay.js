@@ -181,9 +181,10 @@ export class Overlay {
     canvas.addEventListener("pointerdown", (event) => (down = [event.offsetX, event.offsetY]));
     canvas.addEventListener("pointerup", (event) => {
       if (!down || Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) > 4) return;
-      const path = this.view.paths.find((one) => !one.ghost);
-      const t = path?.pick(event.offsetX, event.offsetY) ?? null;
-      if (t !== null) this.session.seek(t);
+      const solid = this.view.paths.filter((path) => !path.ghost);
+      const near = solid.map((path) => path.pick(event.offsetX, event.offsetY)).filter(Boolean);
+      near.sort((a, b) => a.off - b.off);
+      if (near.length) this.session.go(near[0]);
     });
     canvas.addEventListener("pointermove", (event) => {
       if (event.buttons) return;

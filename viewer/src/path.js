@@ -22,6 +22,7 @@ import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { kindOf, rgb, viridis } from "./colours.js";
 import { fewer } from "./fewer.js";
+import { applied, inverted } from "./kinematics.js";
 import { before } from "./track.js";
 
 export const COLOURINGS = {
@@ -265,7 +266,8 @@ export class PathView {
   flags() {
     const { flags } = this.track;
     if (!flags.length) return;
-    const xyz = new Float32Array(flags.flatMap((flag) => this.track.tcp(flag.t)));
+    const into = inverted(this.track.poses(0)[0]);
+    const xyz = new Float32Array(flags.flatMap((flag) => applied(into, ...this.track.tcp(flag.t))));
     const colours = new Float32Array(flags.flatMap((flag) => new Color(FLAGS[flag.kind] ?? 0x888888).toArray()));
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(xyz, 3));
@@ -310,7 +312,8 @@ export class PathView {
     }
   }
 
-  /** The time at which the path passes nearest to a place on the screen; null if none is near. */
+  /** The time at which the path passes nearest to a place on the screen, and how many pixels off;
+   * null if none is near. */
   pick(x, y, reach = 10) {
     const { times, local, nodes } = this.track.path();
     const matrices = this.arm.nodes.map((node) => node.matrix.elements);
@@ -326,8 +329,8 @@ export class PathView {
       const at = this.view.onScreen(point);
       if (!at) continue;
       const off = Math.hypot(at[0] - x, at[1] - y);
-      if (off < reach && (!best || off < best.off)) best = { off, t: times[k] };
+      if (off < reach && (!best || off < best.off)) best = { off, t: times[k], track: this.track.index };
     }
-    return best?.t ?? null;
+    return best;
   }
 }

@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import { KINDS, NAMED, REST, kindOf } from "./colours.js";
 import { h, number } from "./dom.js";
 import { Gantt } from "./gantt.js";
+import { interpolated } from "./track.js";
 
 const LEFT = 54;
 const LEFT_OF_ROWS = 112; // where rows have names
@@ -159,11 +160,9 @@ export class PlotPane {
   clockTimes(track) {
     let last = -1;
     const { session } = this;
-    const mapped = session.sync === "waypoints" && track !== session.track && session.page.together;
-    const own = mapped ? session.page.together[session.active] : null;
-    const other = mapped ? session.page.together[track.index] : null;
+    const met = session.met(track);
     return Array.from(track.t, (t) => {
-      const at = mapped ? interpolated(other, own, t) : t;
+      const at = met ? interpolated(met.other, met.own, t) : t;
       last = at <= last ? last + GAP : at;
       return last;
     });
@@ -403,12 +402,4 @@ function ranged(low, high, limit) {
   const least = near ? Math.min(limit[0] * 1.08, low) : Math.min(0, 1.1 * low);
   const most = near ? Math.max(limit[1] * 1.08, high) : Math.max(0, 1.1 * high);
   return most > least ? [least, most] : [least - 1, least + 1];
-}
-
-function interpolated(from, to, value) {
-  let k = 0;
-  while (k + 2 < from.length && from[k + 1] <= value) k += 1;
-  const span = from[k + 1] - from[k];
-  const share = span > 0 ? Math.min(Math.max((value - from[k]) / span, 0), 1) : 0;
-  return to[k] + share * (to[k + 1] - to[k]);
 }

@@ -83,7 +83,8 @@ class ArmView {
     const move = this.track.moveAt(time);
     for (const part of this.parts) {
       const place = part.places.filter((one) => one.move <= move).at(-1) ?? part.places[0];
-      part.object.visible = !place.gone;
+      const own = time >= (part.begins ?? -Infinity) && time < (part.ends ?? Infinity);
+      part.object.visible = own && !place.gone;
       part.object.matrix
         .fromArray(poses[place.node])
         .multiply(new Matrix4().fromArray(columnMajor(place.place)));

@@ -1,6 +1,9 @@
 // What is shown now: the one clock, which track is the solid one, and who wants to know.
 
-import { before, Track } from "./track.js";
+import { interpolated, Track } from "./track.js";
+
+const alike = (one, other) =>
+  one.group === other.group && one.meets !== null && one.meets.length === other.meets?.length;
 
 export class Session extends EventTarget {
   constructor(page) {
@@ -48,22 +51,27 @@ export class Session extends EventTarget {
 
   get duration() {
     if (!this.track) return 0;
-    if (this.sync === "waypoints") return this.track.duration;
-    return Math.max(...this.shown().map((track) => track.duration));
+    const beside = this.shown().filter((track) => !this.met(track));
+    return Math.max(...beside.map((track) => track.duration));
   }
 
   /** Time of a track when the clock shows t. */
   timeOf(track, t = this.t) {
-    if (this.sync === "waypoints" && this.page.together && track !== this.track) {
-      const own = this.page.together[this.active];
-      const other = this.page.together[track.index];
-      const k = Math.min(before(own, t), own.length - 2);
-      if (k < 0) return Math.min(t, track.duration);
-      const span = own[k + 1] - own[k];
-      const share = span > 0 ? Math.min(Math.max((t - own[k]) / span, 0), 1) : 0;
-      return other[k] + share * (other[k + 1] - other[k]);
-    }
-    return Math.min(t, track.duration);
+    const met = this.met(track);
+    return met ? interpolated(met.own, met.other, t) : Math.min(t, track.duration);
+  }
+
+  /** Times of the active track, and of another one, at which both are at the same places; null
+   * where they run by the clock. */
+  met(track) {
+    if (this.sync !== "waypoints" || track === this.track || !alike(track, this.track)) return null;
+    return { own: this.track.meets, other: track.meets };
+  }
+
+  /** Whether any tracks of a group, or of all of them, can run waypoint by waypoint. */
+  meeting(group = null) {
+    const found = this.tracks.filter((track) => group === null || track.group === group);
+    return found.some((one) => found.some((other) => one !== other && alike(one, other)));
   }
 
   emit(name) {

@@ -7,7 +7,10 @@ const BLOCK = 200; // lines that the browser lays out together
 /** The active track's source; where several robots share one clock that of another one below it. */
 export function sourcePanes(session, host) {
   const first = new SourcePane(session, host);
-  if (session.page.gantt?.length && session.tracks.length > 1) new SourcePane(session, host, new Beside(session));
+  if (session.page.gantt?.length && session.tracks.length > 1) {
+    new SourcePane(session, host, new Beside(session));
+    first.scroll(first.now); // It has half of its room now.
+  }
   return first;
 }
 
@@ -43,8 +46,9 @@ export class SourcePane {
     this.chosen = 0;
     this.files = h("select", { "aria-label": "source file", onchange: () => this.open(+this.files.value) });
     this.note = h("span", { class: "quiet" });
-    this.text = h("div", { class: "code", tabindex: "0", role: "listbox", "aria-label": "source text" });
+    this.text = h("div", { class: "code", tabindex: "0", role: "region", "aria-label": "source text" });
     this.text.addEventListener("click", (event) => this.clicked(event));
+    this.text.addEventListener("keydown", (event) => this.stepped(event));
     this.robots = beside?.list(this) ?? null;
     host.append(h("div", { class: "bar" }, this.robots ?? "", this.files, this.note), this.text);
     session.on("track", () => this.fill());
@@ -155,10 +159,27 @@ export class SourcePane {
   clicked(event) {
     const row = event.target.closest(".line");
     if (!row || String(window.getSelection())) return;
-    const line = +row.dataset.line;
+    this.go(+row.dataset.line);
+  }
+
+  go(line) {
     if (this.index !== this.session.active) this.session.choose(this.index);
     this.session.goLine(this.shown[this.chosen].index, line);
     this.select(line);
+  }
+
+  /** The arrows lead from driven line to driven line. */
+  stepped(event) {
+    const step = { ArrowUp: -1, ArrowDown: 1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const from = this.picked ?? this.now;
+    let line = from ? +from.dataset.line : 0;
+    do line += step;
+    while (this.lines[line] && !this.lines[line].matches(".drives"));
+    if (!this.lines[line]) return;
+    this.go(line);
+    this.scroll(this.picked);
   }
 
   select(line) {

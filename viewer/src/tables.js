@@ -175,7 +175,8 @@ export class TablePane {
     for (const row of this.drawn) {
       const own = row.data.move === move && (row.data.track ?? 0) === active && move >= 0;
       row.classList.toggle("now", own);
-      if (own && this.session.playing === false) row.scrollIntoView({ block: "nearest" });
+      // Before anything is asked for, a table is seen from its beginning.
+      if (own && !this.session.playing && this.session.t > 0) row.scrollIntoView({ block: "nearest" });
     }
   }
 }

@@ -17,6 +17,14 @@ export function before(values, value) {
   return low;
 }
 
+/** Of two columns over the same rows, never falling, the value in one beside that in the other. */
+export function interpolated(from, to, value) {
+  const k = Math.min(before(from, value), from.length - 2);
+  const span = from[k + 1] - from[k];
+  const share = span > 0 ? Math.min(Math.max((value - from[k]) / span, 0), 1) : 0;
+  return to[k] + share * (to[k + 1] - to[k]);
+}
+
 export class Track {
   constructor(data, arm, index) {
     Object.assign(this, { data, arm, index });
@@ -24,6 +32,7 @@ export class Track {
     this.duration = data.duration;
     this.ghost = data.ghost ?? false;
     this.group = data.group ?? "";
+    this.meets = data.meets ?? null;
     this.t = data.motion.t;
     this.moves = data.moves ?? [];
     this.driven = this.moves.map((_, k) => k).filter((k) => this.moves[k].begin !== undefined);
@@ -172,7 +181,7 @@ export class Track {
       const at = this.tcp(time, poses);
       const node = this.moves[this.moveAt(time)]?.node ?? 0;
       world.set(at, 3 * k);
-      local.set(node ? applied(inverted(poses[node]), ...at) : at, 3 * k);
+      local.set(applied(inverted(poses[node]), ...at), 3 * k);
       nodes[k] = node;
     });
     this.drawn = { times, world, local, nodes };

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -19,7 +20,7 @@ from flyby.core.difference.data import (
     tool_differences,
 )
 from flyby.core.difference.differences import Differing
-from flyby.core.difference.moves import move_differences
+from flyby.core.difference.moves import move_differences, move_pairs
 from flyby.core.difference.paths import greatest_distance
 from flyby.core.difference.texts import file_differences
 from flyby.core.difference.waits import wait_differences
@@ -49,6 +50,25 @@ MOVES = [line(0.1, "p1"), line(0.2, "p2"), line(0.3), line(0.4, "p4")]
 
 def found(before: list[MoveL], after: list[MoveL]) -> list[tuple[Differing, str, str]]:
     return [(d.subject, d.name, d.kind) for d in move_differences("main", before, after)]
+
+
+PLACES = st.lists(st.sampled_from([0.1, 0.2, 0.3, 0.4]), max_size=12)
+
+
+@given(PLACES, PLACES)
+def test_moves_that_belong_together_are_in_the_same_order(
+    one: list[float], two: list[float]
+) -> None:
+    pairs = move_pairs([line(x) for x in one], [line(x) for x in two])
+    assert all(a < c and b < d for (a, b), (c, d) in itertools.pairwise(pairs))
+    assert move_pairs([line(x) for x in one], [line(x) for x in one]) == [
+        (k, k) for k in range(len(one))
+    ]
+
+
+def test_a_move_put_in_belongs_to_none() -> None:
+    more = [*MOVES[:2], line(0.25), *MOVES[2:]]
+    assert move_pairs(MOVES, more) == [(0, 0), (1, 1), (2, 3), (3, 4)]
 
 
 @given(poses(), poses())

@@ -114,7 +114,9 @@ def test_a_click_on_a_row_and_on_a_plot_moves_the_clock(opened: Opened, page: by
 
 
 def test_a_click_on_the_path_goes_there(opened: Opened, page: bytes) -> None:
+    """The clock, and with it the line of the source, the row of its move and the plots."""
     view = opened(page)
+    view.get_by_role("tab", name="Moves").click()
     wanted = 0.4 * view.evaluate("flyby.session.duration")
     x, y = view.evaluate("(t) => flyby.view.onScreen(flyby.session.track.tcp(t))", wanted)
     box = view.locator(".scene").bounding_box()
@@ -124,6 +126,56 @@ def test_a_click_on_the_path_goes_there(opened: Opened, page: bytes) -> None:
     meant = view.evaluate("(t) => flyby.session.track.tcp(t)", wanted)
     assert t > 0.0
     assert np.linalg.norm(np.subtract(near, meant)) < 0.05
+    move = view.evaluate("(t) => flyby.session.track.moves[flyby.session.track.moveAt(t)]", t)
+    # Where it waits, the wait's own line is what is driven.
+    driven = view.evaluate("(t) => flyby.session.track.restAt(t)", t) or move
+    now = view.locator(".line.now")
+    assert now.get_attribute("data-line") == str(driven["line"]) != "0"
+    assert view.locator("tr.now td").first.inner_text() == str(move["number"])
+    for shown, room in ((now, ".code"), (view.locator("tr.now"), ".tables .scroll")):
+        inside, outside = shown.bounding_box(), view.locator(room).first.bounding_box()
+        assert inside["y"] + inside["height"] > outside["y"], "it is scrolled to"
+        assert inside["y"] < outside["y"] + outside["height"], "it is scrolled to"
+    assert view.locator(".clock").inner_text().startswith(f"{t:.3f}")
+    plot = view.locator(".u-over").first.bounding_box()
+    head = view.locator(".u-over .playhead").first.bounding_box()
+    share = (head["x"] + 0.5 * head["width"] - plot["x"]) / plot["width"]
+    duration = view.evaluate("flyby.session.duration")
+    assert share == pytest.approx(t / duration, abs=0.01)
+
+
+def test_arrows_lead_from_driven_line_to_driven_line(opened: Opened, page: bytes) -> None:
+    view = opened(page)
+    driven = view.locator(".line.drives").evaluate_all("(all) => all.map((e) => e.dataset.line)")
+    view.locator(".code").focus()
+    view.keyboard.press("Home")
+    seen = []
+    for _ in range(4):
+        view.keyboard.press("ArrowDown")
+        seen.append(view.locator(".line.picked").get_attribute("data-line"))
+    first = driven.index(seen[0])
+    assert seen == driven[first : first + 4]
+    assert view.locator(".line.now").get_attribute("data-line") == seen[-1]
+    view.keyboard.press("ArrowUp")
+    assert view.locator(".line.picked").get_attribute("data-line") == seen[-2]
+
+
+def test_all_that_works_is_reached_by_the_tab_key_and_has_a_name(
+    opened: Opened, page: bytes
+) -> None:
+    view = opened(page)
+    nameless = view.evaluate(
+        """() => [...document.querySelectorAll("button, select, input, [tabindex='0']")]
+          .filter((e) => !e.hidden && !(e.innerText || e.ariaLabel || e.title || e.labels?.length))
+          .map((e) => e.outerHTML)"""
+    )
+    assert nameless == []
+    reached = []
+    for _ in range(60):
+        view.keyboard.press("Tab")
+        reached.append(view.evaluate("document.activeElement.closest('section')?.className"))
+    order = [name for k, name in enumerate(reached) if name and name not in reached[:k]]
+    assert order == ["top", "scene", "transport", "plots", "source", "tables"]
 
 
 def test_tables_are_sorted_and_filtered(opened: Opened, page: bytes) -> None:

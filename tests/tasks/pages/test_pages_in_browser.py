@@ -12,6 +12,7 @@ import trimesh
 
 import flyby
 from flyby.core.errors import InputError
+from flyby.core.spatial.pose import Pose
 from flyby.tasks.pages.of_results import BUILDERS, page_bytes, page_of
 from flyby.tasks.pages.station_page import station_page
 
@@ -74,15 +75,20 @@ def test_waypoint_by_waypoint(opened: Opened, changed: bytes) -> None:
     view = opened(changed)
     view.get_by_label("how tracks run together").select_option("waypoints")
     for move in (2, 3, 4):
-        times = view.evaluate(
-            """(move) => {
-              const [ghost, solid] = flyby.session.tracks;
-              flyby.session.seek(solid.moves[move].begin);
-              return [flyby.session.timeOf(ghost), ghost.moves[move].begin];
-            }""",
-            move,
-        )
-        assert times[0] == pytest.approx(times[1], abs=2e-3)
+        assert_begun_together(view, move, move)
+
+
+def assert_begun_together(view: Any, ghosts: int, solids: int) -> None:
+    """When the solid arm begins a move of its own, the ghost does one of its."""
+    times = view.evaluate(
+        """([ghosts, solids]) => {
+          const [ghost, solid] = flyby.session.tracks;
+          flyby.session.seek(solid.moves[solids].begin);
+          return [flyby.session.timeOf(ghost), ghost.moves[ghosts].begin];
+        }""",
+        [ghosts, solids],
+    )
+    assert times[0] == pytest.approx(times[1], abs=2e-3)
 
 
 _ORDERS = """() => {
@@ -278,7 +284,44 @@ def test_of_two_states_the_routine_that_differs_is_seen(opened: Opened, folder: 
     shown = view.evaluate("[flyby.session.track.group, flyby.session.track.name]")
     assert shown == ["Again", "after"]
     titles = view.evaluate("flyby.tables.tables.map((table) => table.title)")
-    assert titles == ["Routines", "Differences", "Files", "Moves"]
+    assert titles == ["Routines", "Differences", "Files", "Causes", "Lines", "Moves"]
+
+
+def test_the_path_of_a_translated_program_is_where_its_robot_drives(opened: Opened) -> None:
+    """The new robot stands elsewhere, and what it drives is drawn in the old one's world."""
+    program = flyby.read(ROOT / "examples/seam.src", robot="kuka/kr30-3")
+    place = Pose((0.4, 0.0, 0.6))
+    made = flyby.translate(program, robot="ur/ur10e", base=place)
+    view = opened(page_bytes(made, place=place))
+    for share in (0.2, 0.5, 0.8):
+        t, found = view.evaluate(
+            """(share) => {
+              const { session, view } = flyby;
+              const t = share * session.track.duration;
+              const path = view.paths.find((one) => !one.ghost);
+              return [t, path.pick(...view.onScreen(session.track.tcp(t)), 3)?.t];
+            }""",
+            share,
+        )
+        assert found == pytest.approx(t, abs=0.05)
+
+
+def test_two_states_run_waypoint_by_waypoint(opened: Opened, folder: Path) -> None:
+    """Also where one of them has a move that the other has not, and drives slower."""
+    text = SQUARE.read_text("utf-8")
+    (folder / "short.mod").write_text(text, "utf-8")
+    line = "MoveL Offs(p1,200,200,0), v500"
+    more = text.replace(line, f"MoveL Offs(p1,200,100,30), v200, z1, tool0;\n    {line}")
+    assert more != text
+    (folder / "longer.mod").write_text(more, "utf-8")
+    view = opened(page_bytes(flyby.diff(folder / "short.mod", folder / "longer.mod", robot=ROBOT)))
+    clock = view.evaluate("flyby.session.tracks.map((track) => flyby.session.timeOf(track, 1.0))")
+    assert clock == [1.0, 1.0]
+    view.get_by_label("how tracks run together").select_option("waypoints")
+    counts = view.evaluate("flyby.session.tracks.map((track) => track.moves.length)")
+    assert counts == [7, 8]
+    for move in range(1, 7):
+        assert_begun_together(view, move, move if move < 3 else move + 1)
 
 
 def test_a_station_that_never_ends_says_so(opened: Opened, folder: Path) -> None:
