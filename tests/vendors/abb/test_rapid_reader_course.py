@@ -77,6 +77,43 @@ def test_the_first_branch_that_moves_and_comes_back_is_taken(body, taken):
     assert heights(f"n := AInput(ai1);\nbIn := TestDI(di1);\n{body}", data, routines) == taken
 
 
+SEEN = """FUNC num seen()
+  WHILE TRUE DO
+    IF fOther(1) THEN
+      IF k>0 RETURN k;
+    ENDIF
+    WaitTime 0.1;
+  ENDWHILE
+ENDFUNC
+"""
+
+
+def test_a_function_that_the_way_taken_does_not_return_from_is_asked_for():
+    data = "VAR num k;"
+    assert heights("at 1; at seen()+3;", data, SEEN) == [1, 3]
+    asked = program("at 1; at seen()+3;", data, SEEN).questions
+    assert "seen()" in {question.key for question in asked}
+    answers = Answers(values={"seen()": 4.0})
+    assert heights("at 1; at seen()+3;", data, SEEN, answers=answers) == [1, 7]
+    with pytest.raises(SourceError, match="ends without RETURN and a value"):
+        heights("at 1; at none();", data, "FUNC num none() k:=1; ENDFUNC")
+
+
+def test_a_function_that_is_called_as_an_instruction_is_said_to_be_one():
+    said_ = said("at 1; seen; at 2;", "VAR num k;", SEEN)
+    assert any("'seen' is a FUNC, which no controller calls as an instruction" in s for s in said_)
+
+
+def test_a_tool_turned_by_what_is_not_known_points_as_it_would_without():
+    body = "p:=%s; p.rot:=OrientZYX(%s); MoveJ p,v100,fine,tool0;"
+    data = "VAR robtarget p; VAR num a;"
+    (move,) = program("a:=AInput(ai1); " + body % (P, "a,0,180"), data).moves
+    assert not move.open
+    assert abs(move.target.pose.quaternion[1]) == pytest.approx(1.0)
+    with pytest.raises(SourceError, match="the target of MoveJ depends on"):
+        program("a:=AInput(ai1); " + body % (P, "a,a,a"), data)
+
+
 def test_what_was_decided_is_noted_once_with_line_and_branch():
     body = "FOR i FROM 1 TO 3 DO\nIF diPart=1 THEN\nat i;\nELSE\nk:=1;\nENDIF\nENDFOR"
     (note,) = said(body, "VAR num k;")

@@ -371,3 +371,16 @@ def test_a_count_that_begins_with_an_answer_ends_its_loop(tmp_path: Path) -> Non
     program = read(body, tmp_path, "layer = 1\nrow = 0")
     assert turns(program.moves) == [0, 5, 7, 5, 7, 5, 7, 5, 9]
     assert "endless" not in said(program)
+
+
+def test_a_function_that_the_way_taken_does_not_return_from_is_asked_for(tmp_path: Path) -> None:
+    looks = (
+        "END\nDEFFCT REAL look()\nDECL REAL k\nk=0\nLOOP\nIF $IN[7] THEN\nIF k>0 THEN\nRETURN k\n"
+        "ENDIF\nENDIF\nWAIT SEC 0.1\nENDLOOP\nENDFCT\nDEF other()\n"
+    )
+    body = START + "LIN_REL {Y 1}\nPTP {X 900,Y 0,Z 300,A 0,B 90,C 0}\n$VEL.CP=look()\n" + looks
+    assert "look()" in {question.key for question in read(body, tmp_path).questions}
+    answered = read(body, tmp_path, '"look()" = 0.5').questions
+    assert next(q for q in answered if q.key == "look()").answered
+    with pytest.raises(SourceError, match="ends without RETURN and a value"):
+        read(START + "$VEL.CP=n()\nEND\nDEFFCT REAL n()\nENDFCT\nDEF o()\n", tmp_path)

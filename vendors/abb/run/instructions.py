@@ -244,6 +244,12 @@ def refusal(statement: Invoke, data: Globals) -> str:
             f"is a routine that does not move the robot, {answer}",
             statement.span,
         )
+    own = data.routines.get(name)
+    if own is not None and own.kind == "func":
+        return (
+            f"'{statement.text}' is a FUNC, which no controller calls as an instruction: it is "
+            f"stepped over; take what it returns (:=), or {answer}"
+        )
     hint = data.hint(name) or "its text is not at hand"
     known = data.routine_names("proc")
     message = unknown_name("instruction or routine", statement.text, known, hint)

@@ -23,9 +23,10 @@ from ....core.source.reading import ReadOptions
 from ..motion.settings_instructions import SETS
 from ..syntax import tree
 from ..values.data import Globals
+from ..values.defaults import default_of
 from ..values.errors import ProgramError
 from ..values.scope import Scope, Variable
-from ..values.types import Value, find_unknown, interpreted, mismatch
+from ..values.types import Unknown, Value, find_unknown, interpreted, mismatch
 from .analysis import RapidTree
 from .calls import pass_arguments, present
 from .entry import MAIN
@@ -302,9 +303,14 @@ class Interpreter(RapidHost):
         reader, self.evaluator.reader = self.evaluator.reader, ELSEWHERE
         value = self.call(routine, call.arguments, scope, call.span)
         self.evaluator.reader = reader
-        if value is None:
-            raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
         type_ = self.data.type(routine.returns or "", self.data.scope_of(routine).home, call.span)
+        if value is None:
+            if not self.course.guessed:
+                raise SourceError(f"{routine.text} ends without RETURN and a value", call.span)
+            # On its true way, which nobody knows, it may well return.
+            reason = f"the value of {routine.text}(), which the way taken ends without RETURN"
+            key = self.evaluator.answers.key(call.span)
+            return Unknown(reason, call.span, key, default_of(type_))
         wrong = mismatch(value, type_)
         if wrong is not None:
             raise SourceError(f"the value of {routine.text}: {wrong}", call.span)

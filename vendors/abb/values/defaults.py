@@ -81,11 +81,18 @@ def nominal(value: Value, type_: Type | None = None) -> Value | None:
     kinds: list[Type | None] = [None] * len(value)
     if isinstance(type_, RecordType):
         kinds = [*type_.components.values()]
-        # A tool that points anywhere is no default.
-        if type_ is ROBTARGET and find_unknown(value[1]) is not None:
+        if type_ is ROBTARGET and _points_anywhere(value[1]):
             return None
     parts = [nominal(part, kind) for part, kind in zip(value, kinds, strict=False)]
     return None if None in parts else tuple(parts)
+
+
+def _points_anywhere(turn: Value) -> bool:
+    """Whether nobody knows how a tool is turned: of one that is turned by what is not known, from
+    how it points otherwise, that is known well enough."""
+    if find_unknown(turn) is None:
+        return False
+    return not isinstance(turn, Unknown) or turn.nominal in (None, _TAKEN["orient"])
 
 
 def carried(unknown: Unknown, compute: Callable[[], Value | None]) -> Unknown:
