@@ -12,7 +12,7 @@ import typer
 from ..core.errors import OptionError
 from ..tasks.files.outputs import check_outputs, picture_kind
 from ..tasks.files.places import FilePlaces
-from ..tasks.files.source_places import place_json, short_place
+from ..tasks.files.source_places import place_json
 from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
 from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
@@ -20,7 +20,7 @@ from ..tasks.setup import setup_of_program, writable_robot
 from .output.changed_station import changed_station, is_station, refuse_given
 from .output.console import print_json, print_table, progress
 from .output.delivery import OtherVendor, deliver
-from .output.solution_report import gain_shown, solution_json, tell_solution
+from .output.solution_report import ChangedMove, changed_rows, solution_json, tell_solution
 from .parameters import (
     AsJson,
     CellPlot,
@@ -166,26 +166,20 @@ def _tell(program: Path, made: Solution, cell: Cell, written: Sequence[Path]) ->
 
 
 def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
-    """What has changed, move by move; all moves where their number has."""
+    """What has changed, line by line; all moves where their number has."""
     old, new = made.original.moves, made.program.moves
     moved = {point.move: point for point in made.moved}
-    rows: list[tuple[str, ...]] = []
+    changed: list[ChangedMove] = []
     for index, move in enumerate(new):
         before = old[index] if len(old) == len(new) else None
         if before is not None and (before.target, before.zone) == (move.target, move.zone):
             continue
         span = None if before is None else before.statement
-        rows.append(
-            (
-                str(index + 1),
-                short_place(program, span),
-                _moved(before, move),
-                *_rise_and_turn(moved.get(index)),
-                _zone(before, move),
-                gain_shown(made.gained.get(index)),
-            )
-        )
-    return rows
+        said = _moved(before, move), *_rise_and_turn(moved.get(index)), _zone(before, move)
+        changed.append(ChangedMove(index, span, said, made.gained.get(index)))
+    return [
+        (moves, line, *said, gained) for moves, line, said, gained in changed_rows(program, changed)
+    ]
 
 
 def _moved(before: Move | None, move: Move) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -12,7 +12,7 @@ import typer
 from ..core.program.zone import zone_shown
 from ..tasks.files.outputs import check_outputs, picture_kind
 from ..tasks.files.places import FilePlaces
-from ..tasks.files.source_places import place_json, short_place
+from ..tasks.files.source_places import place_json
 from ..tasks.pages.file import check_page
 from ..tasks.read import SourceOptions, read_with
 from ..tasks.setup import setup_of_program
@@ -20,7 +20,7 @@ from ..tasks.zones import ZoneOptions, zones_with
 from .output.changed_station import changed_station, is_station, refuse_given
 from .output.console import print_json, print_table, progress
 from .output.delivery import deliver
-from .output.solution_report import gain_shown, solution_json, tell_solution
+from .output.solution_report import ChangedMove, changed_rows, solution_json, tell_solution
 from .parameters import (
     AsJson,
     CellPlot,
@@ -115,19 +115,23 @@ def _station(
 
 
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> None:
-    print_table(COLUMNS, [_row(program, change, made.gained) for change in made.zones])
+    rows = [
+        (moves, line, *zones, gained, limit)
+        for moves, line, (*zones, limit), gained in changed_rows(
+            program,
+            (
+                ChangedMove(
+                    change.move,
+                    change.span,
+                    (zone_shown(change.before), zone_shown(change.after), change.limit),
+                    made.gained.get(change.move),
+                )
+                for change in made.zones
+            ),
+        )
+    ]
+    print_table(COLUMNS, rows)
     tell_solution(program, made, cell, written)
-
-
-def _row(program: Path, change: ZoneChange, gained: Mapping[int, float]) -> tuple[str, ...]:
-    return (
-        str(change.move + 1),
-        short_place(program, change.span),
-        zone_shown(change.before),
-        zone_shown(change.after),
-        gain_shown(gained.get(change.move)),
-        change.limit,
-    )
 
 
 def _json(made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> dict[str, Any]:

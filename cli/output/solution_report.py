@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ...tasks.files.source_places import note_json
+from ...tasks.files.source_places import note_json, short_place
+from ...tasks.results.lines import in_lines
 from .console import print_rich, print_table, warn, warn_of
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
+    from ...core.errors import Span
     from ...problems.improve.solution import FigureRow, Solution
 
+NAMED = 3
+"""Moves of a line whose numbers are said."""
 _FIGURES = (("", "left"), ("unit", "left"), ("before", "right"), ("after", "right"), ("%", "right"))
 
 
@@ -53,6 +57,37 @@ def solution_json(made: Solution, cell: Cell, written: Sequence[Path]) -> dict[s
 def _allowed(cell: Cell) -> Sequence[tuple[str, str]]:
     """What a user allows to touch; where there is no file it is a matter of the floor alone."""
     return () if cell.file is None else cell.allowed
+
+
+class ChangedMove(NamedTuple):
+    """A row of a table of changes.
+
+    Args:
+        move: index of it.
+        span: where it stands; None where nobody knows.
+        said: what is said of it.
+        gained: s; None where it is not known.
+    """
+
+    move: int
+    span: Span | None
+    said: tuple[str, ...]
+    gained: float | None
+
+
+def changed_rows(
+    program: Path, moves: Iterable[ChangedMove]
+) -> Iterator[tuple[str, str, tuple[str, ...], str]]:
+    """Moves, their line, what is said of them, and what is gained there: a line that runs several
+    times is changed once, and is one row with all that it gains."""
+    for alike in in_lines(moves, lambda one: (one.span, one.said)):
+        place = short_place(program, alike[0].span)
+        gains = [one.gained for one in alike if one.gained is not None]
+        times = f" ×{len(alike)}" if len(alike) > 1 else ""
+        numbers = ", ".join(str(one.move + 1) for one in alike[:NAMED])
+        more = "" if len(alike) <= NAMED else ", …"
+        gained = gain_shown(sum(gains) if gains else None)
+        yield f"{numbers}{more}", f"{place}{times}", alike[0].said, gained
 
 
 def gain_shown(seconds: float | None) -> str:

@@ -18,6 +18,7 @@ from ...drawing.page.content import (
 from ...drawing.page.curves import CHARTS
 from ...problems.improve.solution import Solution
 from ..emulate import EmulateOptions, emulate_with
+from ..results.lines import in_lines
 from ..results.report import target_text
 from ..setup import setup_of_program
 from .meetings import meeting_times
@@ -26,10 +27,13 @@ from .run_page import PageDraft, made_by
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
+    from ...core.errors import Span
     from ...problems.improve.zones.changes import ZoneChange
     from ..results.runs import Run
 
 BEFORE, AFTER = "before", "after"
+_TURNED = 0.005
+"""Degrees from which on a turn is said: rounding of joints turns a tool by less."""
 _FIGURES = (
     PageColumn("figure"),
     PageColumn("unit"),
@@ -41,12 +45,11 @@ _CHANGES = (
     PageColumn("#"),
     PageColumn("line"),
     PageColumn("target"),
+    PageColumn("times"),
     PageColumn("saved", "s", 3, bar=True),
     PageColumn("zone"),
     PageColumn("moved", "mm", 1),
     PageColumn("turned", "°", 2),
-    PageColumn("time before", "s", 3),
-    PageColumn("after", "s", 3),
     PageColumn("no larger because of"),
 )
 
@@ -127,7 +130,8 @@ def _of_run(run: Run, track: int, draft: PageDraft) -> Iterator[PageTable]:
 def changes_table(
     made: Solution, runs: Sequence[Run], draft: PageDraft, track: int = 1
 ) -> PageTable:
-    """A row a move that is otherwise, and the seconds that it saves, those that save most first.
+    """A row a line that is otherwise, with the seconds that it saves in all its passes, those that
+    save most first.
 
     Args:
         made: the solution.
@@ -135,33 +139,38 @@ def changes_table(
         draft: of the page.
         track: of the program after.
     """
-    before, after = runs
+    _, after = runs
     old, new = made.original.moves, made.program.moves
     alike = len(old) == len(new)
     moved = {point.move: point for point in made.moved}
     zones: dict[int, ZoneChange] = {change.move: change for change in getattr(made, "zones", ())}
-    rows: list[tuple[float, PageRow]] = []
+    changed: list[tuple[int, Span | None, tuple[PageCell, ...]]] = []
     for index, move in enumerate(new):
         was = old[index] if alike else None
         point = moved.get(index)
         change = zones.get(index)
-        spent = [_spent(before, index) if alike else None, _spent(after, index)]
         saved = made.gained.get(index)
         same = was is not None and was.zone == move.zone and point is None
         if same and change is None and (saved is None or abs(saved) < 5e-4):
             continue
-        source, line = draft.sources.place(track, move.statement)
-        cells: tuple[PageCell, ...] = (
-            float(index + 1),
-            float(line) if line else None,
+        turned = 0.0 if point is None else degrees(point.turn)
+        said: tuple[PageCell, ...] = (
             target_text(after.report.moves[index]),
-            saved,
             _zones(was, move),
             None if point is None else 1e3 * point.distance,
-            None if point is None else degrees(point.turn) or None,
-            *spent,
+            turned if turned >= _TURNED else None,
             "" if change is None else change.limit,
         )
+        changed.append((index, move.statement, said))
+    rows: list[tuple[float, PageRow]] = []
+    for passes in in_lines(changed, lambda one: one[1:]):
+        index, span, (target, *zone, limit) = passes[0]
+        gains = [made.gained[k] for k, *_ in passes if k in made.gained]
+        saved = sum(gains) if gains else None
+        source, line = draft.sources.place(track, span)
+        times = float(len(passes)) if len(passes) > 1 else None
+        at = float(line) if line else None
+        cells = (float(index + 1), at, target, times, saved, *zone, limit)
         report = after.report.moves[index]
         t = report.begin if report.driven else None
         rows.append((saved or 0.0, PageRow(cells, "", track, t, index, source, line)))
@@ -169,16 +178,14 @@ def changes_table(
     return PageTable("Changes", _CHANGES, [row for _, row in rows])
 
 
-def _spent(run: Run, index: int) -> float | None:
-    """s of a move, with what joints take to settle."""
-    move = run.report.moves[index]
-    return move.time + move.settling if move.driven else None
-
-
 def _zones(was: Move | None, move: Move) -> str:
     """The zone of a move, and what it was where it is another."""
     now = _zone(move.zone)
-    return now if was is None or was.zone == move.zone else f"{_zone(was.zone)} → {now}"
+    if was is None or was.zone == move.zone:
+        return now
+    # One unit is enough: the column is narrow.
+    unit = " mm" if isinstance(move.zone, Radius) else ""
+    return f"{_zone(was.zone).removesuffix(unit)} → {now}"
 
 
 def _zone(zone: Zone) -> str:

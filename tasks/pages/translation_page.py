@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...core.spatial.pose import Pose
 
-_LOSSES = (PageColumn("line"), PageColumn("could not be carried over"))
+_LOSSES = (PageColumn("line before"), PageColumn("could not be carried over"))
 
 
 def translation_page(

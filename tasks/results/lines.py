@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from ...core.errors import Span
 from ...core.motion.emulator.binding_limits import LimitShare, shares_of
@@ -26,6 +27,7 @@ COLUMNS = (
 )
 
 
+T = TypeVar("T")
 WAIT, DEVICE = "wait", "device"
 _SAME = 1e-9
 """s."""
@@ -73,6 +75,21 @@ class _Line:
     moves: list[MoveReport] = field(default_factory=list)
     waits: list[tuple[Wait, int]] = field(default_factory=list)
     unnamed: float = 0.0
+
+
+def in_lines(things: Iterable[T], said: Callable[[T], tuple[Hashable, ...]]) -> list[list[T]]:
+    """Things of which the same is said, in the order of the first: a line that runs six times is
+    one row.
+
+    Args:
+        things: in their order.
+        said: the line of one, and what is said of it; what has no line is a row by itself.
+    """
+    rows: dict[Hashable, list[T]] = {}
+    for thing in things:
+        place, *more = said(thing)
+        rows.setdefault((place, *more) if place else len(rows), []).append(thing)
+    return list(rows.values())
 
 
 def lines_of(program: Program, report: Report) -> tuple[LineReport, ...]:

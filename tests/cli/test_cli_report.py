@@ -76,7 +76,7 @@ def test_zones(flyby: Flyby, tmp_path: Path, box: Path, cell: Path) -> None:
     assert after["proof"]["proven"] and len(after["proof"]["first"]) == 3
     changes = found["tables"][0]
     assert changes["title"] == "Changes"
-    saved = [row["cells"][3] for row in changes["rows"]]
+    saved = [row["cells"][4] for row in changes["rows"]]
     assert saved == sorted(saved, reverse=True) and saved[0] > 0.0
     assert sum(saved) == pytest.approx(before["duration"] - after["duration"], abs=2e-3)
     assert {source.get("track", 0) for source in found["sources"]} == {0, 1}

@@ -22,6 +22,13 @@ export function header(session, host, { theme, help }) {
       h("button", { title: "keys (?)", onclick: help }, "?")),
   ];
   host.append(...pieces.filter(Boolean));
+  // Where all does not fit in one row, figures stand in two.
+  const fit = () => {
+    host.classList.remove("narrow");
+    host.classList.toggle("narrow", host.scrollWidth > host.clientWidth);
+  };
+  new ResizeObserver(fit).observe(host);
+  session.on("track", fit);
 }
 
 /** What the active track's time goes into. */
