@@ -92,7 +92,11 @@ def identified_page(made: IdentifiedModel) -> Page:
         (),
         draft.arms,
         draft.tracks,
-        [PageSource("motion file", made.text, track) for track in range(len(draft.tracks))],
+        # Behind the programs, whose lines moves name.
+        [
+            *draft.files(),
+            *(PageSource("motion file", made.text, track) for track in range(len(draft.tracks))),
+        ],
         [table for table in tables if table.rows],
         CHARTS_OF_LOGS,
         notes=notes,

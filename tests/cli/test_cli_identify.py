@@ -20,6 +20,8 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit import Judgement
 from flyby.identification.logs.synthetic import Faults, synthetic_run
 
+from ..drawing.page.unpacking import columns, content_of
+
 ROOT = Path(__file__).parents[2]
 ROBOT = "abb/irb6640-180-255"
 SQUARE = ROOT / "examples" / "square.mod"
@@ -166,6 +168,32 @@ def test_no_runs(flyby: Flyby, tmp_path: Path) -> None:
     (tmp_path / "lonely.mod").write_text(SQUARE.read_text("utf-8"), "utf-8")
     result = flyby("identify", tmp_path / "lonely.mod", "--robot", ROBOT)
     assert result.exit_code == 1 and "no log of the same name" in result.stderr
+
+
+def test_the_page_of_a_fit(flyby: Flyby, folder: Path, tmp_path: Path) -> None:
+    """Each run with its program's text beside it, before and after the fit and as measured, on one
+    clock or by waypoint."""
+    path = tmp_path / "fit.html"
+    result = flyby(
+        "identify", folder / "square.mod", "--robot", ROBOT, *FIT, "--workers", 1, "--report", path
+    )
+    assert result.exit_code == 0, result.output
+    content, arrays = content_of(path.read_bytes())
+    tracks = content["tracks"]
+    assert [track["name"] for track in tracks] == ["before the fit", "after it", "measured"]
+    for k, track in enumerate(tracks[:2]):
+        for move in track["moves"]:
+            source = content["sources"][move["source"]]
+            assert source.get("track", 0) == k and source["name"] == "square.mod"
+            assert source["text"].splitlines()[move["line"] - 1].split()[0] == (
+                "MoveAbsJ" if "home" in move["label"] else move["label"].split()[0]
+            )
+    motion = [source for source in content["sources"] if source["name"] == "motion file"]
+    assert [source.get("track", 0) for source in motion] == [0, 1, 2]
+    # What was fitted is where the log is at the log's own times, what was before it is not.
+    before, after, measured = (columns(arrays, track["meets"]) for track in tracks)
+    assert len(before) == len(after) == len(measured)
+    assert np.abs(after - measured).max() < 0.02 < np.abs(before - measured).max()
 
 
 def test_no_file_is_replaced_unasked(flyby: Flyby, folder: Path, tmp_path: Path) -> None:

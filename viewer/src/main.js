@@ -53,9 +53,9 @@ function start(page) {
   document.body.append(parts.root);
   const root = document.documentElement;
   let theme = preferred();
-  const dress = () => {
-    root.dataset.theme = theme;
-    view?.setTheme(theme);
+  const dress = (as = theme) => {
+    root.dataset.theme = as;
+    view?.setTheme(as);
     overlay?.fillLabels();
     overlay?.legend();
     plots.setTheme();
@@ -79,7 +79,7 @@ function start(page) {
   const tables = new TablePane(session, parts.tables, drawings);
   keys({ session, transport, view, overlay, tables, theme: turn });
   dress();
-  printing(parts, view, tables);
+  printing(parts, view, tables, dress);
   run(session, view);
   const hash = /[#&]t=([\d.]+)/.exec(window.location.hash);
   if (hash) session.seek(+hash[1]);
@@ -97,17 +97,21 @@ function run(session, view) {
   window.requestAnimationFrame(frame);
 }
 
-/** On paper the scene is a picture, and tables stand one below the other. */
-function printing({ root, scene }, view, tables) {
+/** On paper, which is light, the scene is a picture, and tables stand one below the other. */
+function printing({ root, scene }, view, tables, dress) {
   const papers = h("section", { class: "papers" });
   const image = view && h("img", { class: "printed", alt: "the cell" });
   root.append(papers);
   if (image) scene.append(image);
   window.addEventListener("beforeprint", () => {
+    dress("light");
     if (image) image.src = view.picture();
     papers.replaceChildren(...tables.printed());
   });
-  window.addEventListener("afterprint", () => papers.replaceChildren());
+  window.addEventListener("afterprint", () => {
+    papers.replaceChildren();
+    dress();
+  });
 }
 
 const ready = readPage().then(start);

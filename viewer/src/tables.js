@@ -3,7 +3,8 @@
 import { h, number } from "./dom.js";
 
 const MOST_ROWS = 3000;
-const UNBROKEN = 30; // characters of a cell that stays in one line; longer ones are prose
+const BRIEF = 14; // characters of a cell that stays in one line
+const UNBROKEN = 30; // likewise where there is room; longer ones are prose
 
 export class TablePane {
   constructor(session, host, drawings = []) {
@@ -118,14 +119,15 @@ export class TablePane {
     this.mark();
   }
 
-  /** Text is broken where a table is wider than its place, and fits if it is. */
+  /** Text is broken where a table is wider than its place, then headings, and fits if they are. */
   fit() {
     const table = this.body.querySelector("table");
     if (!table) return;
     const wide = () => this.body.scrollWidth > this.body.clientWidth + 1;
-    table.classList.remove("tight");
+    table.classList.remove("tight", "tightest");
     if (wide()) table.classList.add("tight");
-    if (wide()) table.classList.remove("tight");
+    if (wide()) table.classList.add("tightest");
+    if (wide()) table.classList.remove("tight", "tightest");
   }
 
   /** All tables one below the other, for paper. */
@@ -153,7 +155,8 @@ export class TablePane {
         }
         return td;
       }
-      const kind = numeric[k] ? "right" : String(cell ?? "").length <= UNBROKEN ? "short" : "";
+      const { length } = String(cell ?? "");
+      const kind = numeric[k] ? "right" : length <= BRIEF ? "brief" : length <= UNBROKEN ? "short" : "";
       return h("td", { class: kind }, cell ?? "");
     });
     const element = h("tr", { class: row.level ?? "", tabindex: "0" }, ...cells);

@@ -55,6 +55,34 @@ def test_before_and_after(opened: Opened, changed: bytes) -> None:
     assert "z10" in view.locator(".source").inner_text()
 
 
+@pytest.mark.parametrize("wide", [1280, 1024, 820])
+def test_all_at_the_top_is_inside_and_apart(opened: Opened, changed: bytes, wide: int) -> None:
+    view = opened(changed, viewport={"width": wide, "height": 768})
+    boxes = view.evaluate(
+        """() => [...document.querySelectorAll(".top > *, .fact, .choice > *")]
+          .filter((e) => !e.hidden).map((e) => [e.className, e.getBoundingClientRect().toJSON()])"""
+    )
+    assert {"title", "facts", "shares", "choice", "tools"} <= {name for name, _ in boxes}
+    assert all(box["left"] >= 0 and box["right"] <= wide for _, box in boxes)
+    areas = [box for name, box in boxes if name in ("title", "facts", "shares", "choice", "tools")]
+    for k, one in enumerate(areas):
+        for other in areas[k + 1 :]:
+            apart = one["right"] <= other["left"] or other["right"] <= one["left"]
+            assert apart or one["bottom"] <= other["top"] or other["bottom"] <= one["top"]
+
+
+def test_paper_is_light_and_holds_all_tables(opened: Opened, changed: bytes) -> None:
+    view = opened(changed, color_scheme="dark")
+    titles = view.evaluate("flyby.tables.tables.map((table) => table.title)")
+    view.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert view.evaluate("document.documentElement.dataset.theme") == "light"
+    assert view.locator(".papers h2").evaluate_all("(all) => all.map((e) => e.innerText)") == titles
+    assert view.locator(".printed").get_attribute("src").startswith("data:image/png")
+    view.evaluate("window.dispatchEvent(new Event('afterprint'))")
+    assert view.evaluate("document.documentElement.dataset.theme") == "dark"
+    assert view.locator(".papers table").count() == 0
+
+
 def test_what_is_driven_fills_its_plot_and_names_fit(opened: Opened) -> None:
     """Programs ask for vmax; a UR's joints have long names."""
     moves = "".join(f"movel(p[0.4,{y},0.4,0,3.14,0], a=9, v=50)\n" for y in (-0.2, 0.2))
