@@ -85,6 +85,8 @@ class PluginFault(SourceError):
     @classmethod
     def of(cls, what: str, error: Exception, span: Span | None = None) -> PluginFault:
         """What failed, with the exception and where it was raised."""
+        if isinstance(error.__cause__, StopIteration):  # a generator says it in words of its own
+            error = error.__cause__
         last = error.__traceback__
         while last is not None and last.tb_next is not None:
             last = last.tb_next

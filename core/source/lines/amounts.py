@@ -77,6 +77,24 @@ def with_number(speed: Speed, name: str, value: float) -> Speed:
     return replace(speed, **numbers)
 
 
+def overridden(speed: Speed, share: float, joint: bool) -> Speed:
+    """A speed of which a share is driven, of a joint move or another one; accelerations stay.
+
+    Raises:
+        InputError: nothing of it is driven.
+    """
+    if share <= 0:
+        raise InputError(f"with an override of {100 * share:g} % the robot stands still")
+    numbers: dict[str, Any] = {
+        name: value * share
+        for name in ("tcp", "reorientation", "joint", *(("joint_fraction",) if joint else ()))
+        if (value := getattr(speed, name)) is not None
+    }
+    if speed.duration is not None:
+        numbers["duration"] = speed.duration / share
+    return replace(speed, **numbers)
+
+
 def zone_number(zone: object, amount: Amount) -> float:
     """A number of a zone, in the text's own unit: of a stop all are 0."""
     if amount.name == PASSING:

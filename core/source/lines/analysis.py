@@ -144,13 +144,13 @@ def unsaid(
             said = line[0].rstrip()
             if len(said) > _LONGEST:
                 continue
-            words = [one.word for one in settings if one.pattern.fullmatch(said)]
+            words = [one.names[0] for one in settings if one.pattern.fullmatch(said)]
             words += [word for pattern, word in begins if pattern.match(said)]
             place = line.start(), line.start() + len(said)
             if words:
                 yield Unsaid(words[0], *place, given=True)
             elif motion.match(said):
-                every = (*(one.word for one in settings), *others)
+                every = (*(one.names[0] for one in settings), *others)
                 yield from (Unsaid(word, *place) for word in every)
 
     return found

@@ -19,7 +19,7 @@ from ...program.target import PoseTarget, Target
 from ...program.zone import FINE, Zone
 from ...spatial.pose import IDENTITY, Pose
 from ..patch.uses import UseKind
-from .amounts import Amount
+from .amounts import Amount, overridden
 from .expressions import Datum, Expression, Number, Operation, parse_all
 from .forms import FormGrammar, Found
 from .motions import MotionWords
@@ -100,7 +100,8 @@ class MotionGrammar(FormGrammar):
             ``TRANS({numbers})``; ``""`` for neither. Patches put them in.
         count: numbers of a position.
         current: what stands for the numbers of where the running robot is, in capitals.
-        override: word of the register that holds the speed override in %.
+        override: word of the register that holds the override of speeds in %, of motions and of
+            settings.
         frames: tools and frames.
         unit: m of one of the distances of ``approach`` and ``depart``.
     """
@@ -135,12 +136,13 @@ class MotionGrammar(FormGrammar):
     def __init__(self) -> None:
         super().__init__()
         self._arc = ArcPoints()
+        self._kinds = {word.upper(): letter for word, letter in self.kinds.items()}
         self._via: tuple[Line, Operand] | None = None
         if (held := self.frames) is not None:
             none = Numbers.of(self.form.numbers(IDENTITY))
-            words = [word for word in (held.tool, held.frame) if word]
+            words = [word.upper() for word in (held.tool, held.frame) if word]
             first: Initial = {(word, None): none for word in words}
-            first = {(word, None): 0.0 for word in held.chosen} if held.numbered else first
+            first = {(word.upper(), None): 0.0 for word in held.chosen} if held.numbered else first
             self.vectors = {**self.vectors, **dict.fromkeys(words, len(none))}
             self.initial = {**first, **self.initial}
 
@@ -237,7 +239,7 @@ class MotionGrammar(FormGrammar):
         """
         said = found["kind"].upper()
         point = self.place(line, found, "point") if back is None else back
-        kind = self.kinds.get(said, said[-1])
+        kind = self._kinds.get(said, said[-1])
         given = found.groupdict()
         via = self.place(line, found, "via") if given.get("via") else via
         if self._via is not None:
@@ -249,6 +251,8 @@ class MotionGrammar(FormGrammar):
             kind, via = self._arc.add(point, called)
         else:
             self._arc.end(called)
+            if kind not in ("J", "L", "C"):
+                raise InputError(f"{said} is no kind of motion that `kinds` has")
             if (kind == "C") != (via is not None):
                 raise InputError("an arc has two points, other motions have one")
         if not kind:
@@ -265,10 +269,10 @@ class MotionGrammar(FormGrammar):
             if self.words is None or not self._says(found, UseKind.SPEED):
                 pace = settings.speed(paces, joint)
             else:
-                scale = now.setting(self.override, 100.0) / 100 if self.override else 1.0
-                unit, share = given.get("unit", "") or "", bool(given.get("share"))
-                unit = None if not given.get("speed") else unit
-                pace = self.words.speed_of(kind, unit, paces, share, scale)
+                unit = (given.get("unit") or "") if given.get("speed") else None
+                pace = self.words.speed_of(kind, unit, paces, bool(given.get("share")))
+            if self.override:
+                pace = overridden(pace, now.setting(self.override, 100.0) / 100, joint)
             if settings.flying and not found["flying"]:
                 near: Zone = FINE
             elif self.words is None or not self._says(found, UseKind.ZONE):

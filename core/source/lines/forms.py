@@ -132,7 +132,8 @@ class FormGrammar(Grammar):
     def options(
         self, line: Line, found: Found, group: str, option: re.Pattern[str]
     ) -> dict[str, tuple[int, int]]:
-        """The options in a group: where what their named groups hold stands in the text.
+        """The options in a group: where what their named groups hold stands in the text. The
+        pattern is of one of them, without the blanks before it.
 
         Raises:
             InputError: an option is not known.
@@ -140,6 +141,7 @@ class FormGrammar(Grammar):
         given: dict[str, tuple[int, int]] = {}
         text, (at, end) = line.source.text, found.span(group)
         while text[at:end].strip():
+            at += len(text[at:end]) - len(text[at:end].lstrip())
             one = option.match(text, at, end)
             if one is None or one.end() == at:
                 left = text[at:end].strip()

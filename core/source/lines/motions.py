@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ...errors import InputError
 from ...program.move import Move, MoveJ
@@ -23,8 +23,8 @@ class MotionWords:
 
     Args:
         joint, line: what the number of a speed is in joint moves, and in lines and arcs, by its
-            unit; the first that a move states is written.
-        zones: kinds of zone by word.
+            unit; the first that a move states is written. Empty where settings say it.
+        zones: kinds of zone by word; likewise.
         stop: what stands for none; None where a zone of size 0 does.
         unstated: what stands for a speed of which a move states nothing.
         speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
@@ -35,9 +35,9 @@ class MotionWords:
             and ``share``.
     """
 
-    joint: Units
-    line: Units
-    zones: Mapping[str, ZoneKind]
+    joint: Units = field(default_factory=dict)
+    line: Units = field(default_factory=dict)
+    zones: Mapping[str, ZoneKind] = field(default_factory=dict)
     stop: str | None = "FINE"
     unstated: str = ""
     speed: str = "{number}{unit}"
@@ -62,7 +62,6 @@ class MotionWords:
         unit: str | None,
         numbers: Sequence[float],
         share: bool = False,
-        override: float = 1.0,
     ) -> Speed:
         """The speed of the numbers of a motion.
 
@@ -70,7 +69,6 @@ class MotionWords:
             kind: ``J``, ``L`` or ``C``.
             unit: of the first number; None if no speed is stated.
             share: whether the last number is a share of acceleration, %.
-            override: that is laid on the speed, and makes durations longer.
 
         Raises:
             InputError: such moves have no speeds in this unit.
@@ -82,9 +80,8 @@ class MotionWords:
         amount = next((a for known, a in units.items() if known.upper() == unit.upper()), None)
         if amount is None:
             raise InputError(f"the speed of such a motion is no number of {unit}")
-        number = numbers[0] / override if amount.name == "duration" else numbers[0] * override
         speed = Speed(acceleration_override=acceleration)
-        return with_number(speed, amount.name, number * amount.one)
+        return with_number(speed, amount.name, numbers[0] * amount.one)
 
     def zone_of(self, word: str | None, numbers: Sequence[float]) -> Zone:
         """The zone of its word and numbers.
@@ -160,6 +157,8 @@ class MotionWords:
 
     def zone_text(self, move: Move) -> str:
         """The words of a move's zone."""
+        if not self.zones:  # settings say it
+            return ""
         if self.stop is not None and not isinstance(move.zone, VendorZone):
             return self.stop
         numbers = self.numbers(move.zone, move)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields, replace
@@ -18,7 +17,7 @@ from ..patch.edits import Edit, reading_of
 from ..patch.plan import PatchPlan, Wish, patch_program
 from ..patch.uses import MovePart, Use, UseKind
 from ..reading import Files
-from ..text.numerals import nine_decimals, with_decimals_of
+from ..text.numerals import in_proportion, nine_decimals, with_decimals_of
 from ..write.options import PatcherOptions
 
 Text = Callable[[Span], str]
@@ -132,13 +131,7 @@ class _Literals:
         speeds and zones grow as their numbers do."""
         if use.kind not in (UseKind.SPEED, UseKind.ZONE) or not before:
             return nine_decimals(value)
-        try:
-            stated = float(self.text(span))
-        except ValueError:
-            stated = before
-        if math.isclose(stated, before, rel_tol=1e-9) or stated == 0:
-            return nine_decimals(value)
-        return nine_decimals(stated * (value / before))
+        return nine_decimals(in_proportion(self.text(span), before, value))
 
 
 def _same_words(use: Use) -> bool:

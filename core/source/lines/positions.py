@@ -158,15 +158,15 @@ class FrameRegisters:
     ) -> tuple[str, Pose]:
         """What one is called, ``""`` for none, and where it is."""
         if not self.numbered:
-            numbers = now.vector(word, None) if word else form.numbers(IDENTITY)
+            numbers = now.vector(word.upper(), None) if word else form.numbers(IDENTITY)
             pose, kind = form.pose(numbers), getattr(numbers, "kind", None)
             name = kind if isinstance(kind, str) else word.strip("$").lower()
             return "" if pose == IDENTITY else name, pose
-        number = int(now.setting(chosen, 0.0)) if number is None else number
+        number = int(now.setting(chosen.upper(), 0.0)) if number is None else number
         if not number:
             return "", IDENTITY
         try:
-            return f"{word}[{number}]", form.pose(now.vector(word, number))
+            return f"{word}[{number}]", form.pose(now.vector(word.upper(), number))
         except SourceError:
             offer = f"put {self.beside} beside the program, or " if self.beside else ""
             raise InputError(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import PurePath
 from types import MappingProxyType
+from typing import Any
 
 from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
 from ..text.files import SourceText, unbroken
@@ -30,8 +31,28 @@ Initial = Mapping[tuple[str, int | None], Numbers | Value]
 """What registers hold, by word and number; the number of one that there is once is None."""
 
 
+_WORDS = frozenset(
+    {"registers", "vectors", "initial", "outputs", "argument"}
+    | {"joints", "chained", "current", "override"}
+)
+"""What of a grammar names data, or kinds of points and motions."""
+
+
+def _folded(given: Any) -> Any:
+    """Words as data are called: in capitals."""
+    if isinstance(given, re.Pattern):
+        return re.compile(given.pattern, given.flags | re.IGNORECASE)
+    if isinstance(given, str):
+        return given.upper()
+    if isinstance(given, tuple):  # a word and a number
+        return given[0].upper(), given[1]
+    if isinstance(given, Mapping):
+        return {_folded(word): value for word, value in given.items()}
+    return frozenset(map(_folded, given)) if isinstance(given, set | frozenset) else given
+
+
 class Grammar:
-    """What a language takes a line for.
+    """What a language takes a line for. Upper and lower case of its words are the same.
 
     Attributes:
         registers: words of data that the program itself sets and reads, one number each; or what
@@ -50,6 +71,12 @@ class Grammar:
     outputs: Container[str] = frozenset()
     argument: str = ""
     settings: Settings = Settings()
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        for name, given in list(vars(cls).items()):
+            if name in _WORDS:
+                setattr(cls, name, _folded(given))
 
     def holds(self, word: str) -> bool:
         """Whether data of a word are what the program has set them to."""

@@ -20,7 +20,7 @@ from ...program.zone import FINE, Fine, Radius, VendorZone, Zone, ZoneKind
 from ...robot.model import Robot
 from ..patch.edits import Edit
 from ..patch.uses import MovePart, Use, UseKind
-from ..text.numerals import nine_decimals, with_decimals_of
+from ..text.numerals import in_proportion, nine_decimals, with_decimals_of
 from .amounts import (
     BEHIND,
     PASSING,
@@ -42,7 +42,7 @@ class Setting:
     """A word whose numbers hold.
 
     Args:
-        word: in capitals.
+        word: as it is written.
         joint, line: what its number, the first of several, is for joint moves, and for lines and
             arcs, by unit.
         initial: the number, or all of several, that holds before the word is said; None if nobody
@@ -96,8 +96,9 @@ class Setting:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Under which its numbers are kept."""
-        return (self.word, *(f"{self.word}[{k}]" for k in range(2, self.count + 1)))
+        """Under which its numbers are kept: data are called in capitals."""
+        word = self.word.upper()
+        return (word, *(f"{word}[{k}]" for k in range(2, self.count + 1)))
 
     @property
     def whole(self) -> bool:
@@ -219,7 +220,8 @@ class Setting:
         for k, one in enumerate(given):
             if old[k] != new[k]:
                 own = one.strip()
-                given[k] = one.replace(own, with_decimals_of(own, nine_decimals(new[k])))
+                said = nine_decimals(in_proportion(own, old[k], new[k]))
+                given[k] = one.replace(own, with_decimals_of(own, said))
         for k in range(len(given), self.count):
             left_out = self.omitted[k] if self.omitted else new[k - 1]
             if nine_decimals(new[k]) != nine_decimals(left_out):
@@ -259,7 +261,7 @@ class Settings:
         return iter(self.settings)
 
     def __contains__(self, word: object) -> bool:
-        return any(one.word == word for one in self.settings)
+        return any(one.names[0] == word for one in self.settings)
 
     def sets(self, kind: UseKind) -> bool:
         """Whether they set a speed, or a zone."""
@@ -290,7 +292,7 @@ class Settings:
         return Operand(
             span,
             tuple(
-                Datum(span, one.word, None, Number(span, k + 1.0) if k else None)
+                Datum(span, one.names[0], None, Number(span, k + 1.0) if k else None)
                 for one in self._of(kind)
                 for k in range(one.count)
             ),
@@ -375,7 +377,7 @@ class Settings:
         counting, at = self._counting(use.kind, use.new), 0
         for one in self._of(use.kind):
             places = {*use.origin.numbers[at : at + one.count]}
-            mine = use.origin.numbers and use.origin.datum_of(at) == one.word
+            mine = use.origin.numbers and use.origin.datum_of(at) == one.names[0]
             at += one.count
             place = places.pop() if len(places) == 1 else None
             old, new = one.stated(use.move, use.old), one.stated(use.move, use.new)

@@ -28,7 +28,7 @@ class Signals:
 
     Args:
         grammar: reads the statements.
-        digital: words of digital outputs, the usual one first.
+        digital: words of digital outputs as they are written, the usual one first.
         inputs: of digital inputs, likewise.
         analogue: of outputs that have a level.
         written: how a signal is written: ``OT#({number})``.
@@ -123,28 +123,35 @@ class Signals:
     def spelt(self, name: str) -> str | None:
         """The canonical name of a signal, ``DO[1]``, by which answers, links and maps of signals
         know it, however it is `written`; None for what is no name of one."""
-        words = "|".join((*self.digital, *self.inputs, *self.analogue))
+        words = "|".join(self._every)
         found = re.fullmatch(rf"\s*({words})\W{{0,3}}(\d+)\W{{0,3}}", name, re.IGNORECASE)
         return None if found is None else f"{found[1].upper()}[{found[2]}]"
 
     def example(self, action: SignalAction) -> str:
         """What a signal of such an action is called."""
         if isinstance(action, WaitSignal):
-            return f"{self.inputs[0]}[?]"
+            return f"{self.inputs[0].upper()}[?]"
         words = self.digital if isinstance(action.value, bool) else self.analogue
-        return f"{(words or self.digital)[0]}[?]"
+        return f"{(words or self.digital)[0].upper()}[?]"
 
     def _switched(self, name: str, value: bool | float) -> str:
         shown = self.truths[value] if isinstance(value, bool) else f"{value:g}"
         return self.switch.format(signal=self._written(name), value=shown)
 
     def _written(self, name: str) -> str:
-        word, _, number = name.rstrip("]").partition("[")
-        return self.written.format(word=word, number=int(number) + self.first.get(word, 0))
+        called, _, number = name.rstrip("]").partition("[")
+        word = next((one for one in self._every if one.upper() == called), called)
+        first = {one.upper(): value for one, value in self.first.items()}
+        return self.written.format(word=word, number=int(number) + first.get(called, 0))
+
+    @property
+    def _every(self) -> tuple[str, ...]:
+        return *self.digital, *self.inputs, *self.analogue
 
     @staticmethod
     def _name(datum: Expression, words: tuple[str, ...]) -> str | None:
-        if not isinstance(datum, Datum) or datum.word not in words or datum.element is not None:
+        known = {word.upper() for word in words}
+        if not isinstance(datum, Datum) or datum.word not in known or datum.element is not None:
             return None
         index = datum.index
         return f"{datum.word}[{index.value:g}]" if isinstance(index, Number) else None

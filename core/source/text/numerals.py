@@ -65,3 +65,15 @@ def with_decimals_of(before: str, number: str) -> str:
     missing = len(old[1] or "") - len(new[1] or "")
     point = "" if missing <= 0 or "." in number else "."
     return number + point + "0" * missing
+
+
+def in_proportion(text: str, before: float, value: float) -> float:
+    """What a number in a text becomes, of which ``before`` was made and ``value`` is to be: an
+    override, or a unit, is on it."""
+    try:
+        stated = float(text)
+    except ValueError:
+        return value
+    if stated == 0 or before == 0 or math.isclose(stated, before, rel_tol=1e-9):
+        return value
+    return stated * (value / before)
