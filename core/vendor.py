@@ -277,6 +277,8 @@ class Vendor:
         Raises:
             InputError, MotionError: as `record`.
         """
+        if not 0 < period < float("inf"):
+            raise InputError(f"{period:g} s are no period: samples are some milliseconds apart")
         self.check_written(robot)
         recorder = self._part(self.recorder, "recorder")
         runs = tuple(

@@ -26,6 +26,9 @@ author writes down, in a TOML file, texts as controllers run them beside what th
     zone = { kind = "Radius", tcp_mm = 8 }
     events = [{ sets = "do3", to = true, distance_mm = 15 }]
 
+What must not be read, since the plugin would take it for something else, stands in ``[[refused]]``:
+``about``, ``files``, ``says``, a part of the message, and ``robot`` and ``answers`` as of a text.
+
 A text with ``recorded = { period_ms = 24, lines = ["RUN LOGGER", "…"] }`` says by which lines, in
 their order, its recording begins to log, how often, and how it ends.
 
@@ -41,7 +44,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +85,8 @@ NEAR_TURN = 1e-5
 _NAMED = {"tool": "tools", "frame": "frames", "load": "loads"}
 """What may be stated once, and the table that it stands in."""
 _SHARED = ", ".join(_NAMED.values())
+_OF_TEXTS = frozenset({"about", "files", "robot", "answers"})
+"""Keys of all texts."""
 _BESIDE = ("kind", "stands", "not_driven")
 """Terms of a statement that are no numbers of its own."""
 
@@ -99,6 +104,7 @@ class GoldenText:
         recorded: s between samples of its recording, and lines that this has; None if it is not
             recorded.
         answers: to what the text asks of the world, by the names of inputs and data.
+        says: a part of the message with which it is refused.
     """
 
     about: str
@@ -108,6 +114,7 @@ class GoldenText:
     entry: str | None = None
     recorded: tuple[float, tuple[str, ...]] | None = None
     answers: Mapping[str, Answer] = field(default_factory=dict)
+    says: str = ""
 
 
 @dataclass(frozen=True)
@@ -126,11 +133,13 @@ class Golden:
     Args:
         texts: with what they say.
         robots: with numbers of their data sheets.
+        refused: that are refused; ``says`` is a part of the message.
         none: what the language has no words for, of `LANGUAGE`.
     """
 
     texts: tuple[GoldenText, ...] = ()
     robots: tuple[GoldenRobot, ...] = ()
+    refused: tuple[GoldenText, ...] = ()
     none: frozenset[str] = field(default_factory=frozenset)
 
     @classmethod
@@ -156,15 +165,17 @@ LANGUAGE = (
 
 
 def _golden(data: Mapping[str, Any]) -> Golden:
-    unknown = sorted(data.keys() - {"none", "robots", "texts", *_NAMED.values()})
+    unknown = sorted(data.keys() - {"none", "robots", "texts", "refused", *_NAMED.values()})
     if unknown:
-        raise InputError(f"unknown key {unknown[0]!r}: there are none, robots, texts, {_SHARED}")
+        known = f"none, robots, texts, refused, {_SHARED}"
+        raise InputError(f"unknown key {unknown[0]!r}: there are {known}")
     none = frozenset(data.get("none", ()))
     if none - set(LANGUAGE):
         raise InputError(f"none: there is no {sorted(none - set(LANGUAGE))[0]!r} in {LANGUAGE}")
     return Golden(
         tuple(_text(one, data) for one in data.get("texts", ())),
         tuple(_robot(one) for one in data.get("robots", ())),
+        tuple(_refused(one) for one in data.get("refused", ())),
         none,
     )
 
@@ -173,6 +184,7 @@ def _text(data: Mapping[str, Any], shared: Mapping[str, Any]) -> GoldenText:
     about = data.get("about", "")
     if not about or not data.get("files"):
         raise InputError("a text has 'about', 'files' by name, and 'statements'")
+    _check_keys(data, {*_OF_TEXTS, "entry", "recorded", "statements"})
     rows = tuple(_in_si(_spelt_out(one, shared)) for one in data.get("statements", ()))
     for row in rows:
         known = TERMS[_kind(row)]
@@ -191,10 +203,33 @@ def _text(data: Mapping[str, Any], shared: Mapping[str, Any]) -> GoldenText:
                 f'text {about!r}: recorded = {{ period_ms = …, lines = ["…"] }}, and its robot'
             )
         recorded = own["period"], tuple(own["lines"])
-    files = dict(data["files"])
+    made = GoldenText(about, dict(data["files"]), rows, data.get("robot"), data.get("entry"))
+    return replace(made, recorded=recorded, answers=_answers(data))
+
+
+def _refused(data: Mapping[str, Any]) -> GoldenText:
+    if not (data.get("about") and data.get("files") and data.get("says")):
+        raise InputError("a refused text has 'about', 'files', and what its message 'says'")
+    _check_keys(data, {*_OF_TEXTS, "says"})
+    made = GoldenText(data["about"], dict(data["files"]), (), data.get("robot"))
+    return replace(made, says=data["says"], answers=_answers(data))
+
+
+def _check_keys(data: Mapping[str, Any], known: set[str]) -> None:
+    unknown = sorted(data.keys() - known)
+    if unknown and unknown[0] in _NAMED.values():
+        raise InputError(f"text {data['about']!r}: {unknown[0]} stand before all texts")
+    if unknown:
+        raise InputError(
+            f"text {data['about']!r}: unknown key {unknown[0]!r}: there are "
+            f"{', '.join(sorted(known))}"
+        )
+
+
+def _answers(data: Mapping[str, Any]) -> dict[str, Answer]:
+    """Answers by name; upper and lower case are the same, as in files of answers."""
     told = data.get("answers", {})
-    answers = {k: float(v) if type(v) is int else v for k, v in told.items()}
-    return GoldenText(about, files, rows, data.get("robot"), data.get("entry"), recorded, answers)
+    return {k.lower(): float(v) if type(v) is int else v for k, v in told.items()}
 
 
 def _spelt_out(row: Mapping[str, Any], shared: Mapping[str, Any]) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import zip_longest
@@ -10,7 +10,7 @@ from itertools import zip_longest
 import numpy as np
 import pytest
 
-from ...core.errors import FaultCause, FlybyError
+from ...core.errors import FaultCause, FlybyError, PluginFault
 from ...core.language import Reader
 from ...core.motion.emulator.controller import Controller
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement
@@ -21,7 +21,9 @@ from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE
 from ...core.program.zone import kind_word, zone_word
 from ...core.source.lines.driving import MotionGrammar
+from ...core.source.lines.forms import FormGrammar
 from ...core.source.lines.language import LineLanguage
+from ...core.source.lines.settings import Setting
 from ...core.source.write.options import OpaqueStyle
 from ...core.spatial.pose import IDENTITY
 from ..golden import LANGUAGE, GoldenText, differences, terms_of
@@ -61,6 +63,31 @@ class GoldenChecks(Subject):
                     look=_first_wrong(wrong),
                 )
 
+    def test_golden_texts_are_refused_where_their_author_says(self) -> None:
+        """What a plugin would take for something else it does not read."""
+        for text in self.golden_refused:
+            try:
+                program = self.read_files(text)
+            except PluginFault:
+                raise
+            except FlybyError as error:
+                said, whole = str(error), text.says.lower() in str(error).lower()
+                assert whole, told(
+                    f"text {text.about!r} is refused for something else",
+                    written=f"{text.says!r}, a part of the message, by the author",
+                    read=said,
+                    look="what is raised for this line, and what for the lines before",
+                )
+                continue
+            raise AssertionError(
+                told(
+                    f"text {text.about!r} is read, and refused by its author",
+                    written=text.says,
+                    read=" ".join(type(s).__name__ for s in program.statements),
+                    look="`driving`, the forms, and the options of motions",
+                )
+            )
+
     def test_golden_moves_stand_where_their_author_says(self) -> None:
         """Joints at the ends of moves: through tool, frame, label and inverse kinematics."""
         for text in self.golden_texts:
@@ -70,6 +97,8 @@ class GoldenChecks(Subject):
                 continue
             robot = self.vendor.robot(text.robot)
             program = self.read_golden(text)
+            if len(rows) != len(program.moves):
+                raise AssertionError(_other_statements(text, program))
             try:
                 route = Controller(self.vendor, robot).plan(program).route
             except FlybyError as error:
@@ -144,21 +173,23 @@ class GoldenChecks(Subject):
         )
 
     def test_every_form_of_line_counts_in_a_golden_text(self) -> None:
-        """Each form of a language of lines, and each setting, passed over: a golden text is read
-        otherwise then."""
+        """Each form of a language of lines, each setting, and what is where nothing is said,
+        otherwise: a golden text is read otherwise then, or what is to be refused is not."""
         language = self.vendor.reader
         if self.golden is None or not isinstance(language, LineLanguage):
             pytest.skip(f"{self.name} has no golden texts, or no forms of lines")
-        told_so = [self._reads(language, text) for text in self.golden_texts]
+        texts = (*self.golden_texts, *self.golden_refused)
+        told_so = [self._reads(language, text) for text in texts]
         unseen = []
         for name, grammar in _without_each(language.grammar):
             other = copy(language)
             other.grammar = grammar
-            if [self._reads(other, text) for text in self.golden_texts] == told_so:
+            if [self._reads(other, text) for text in texts] == told_so:
                 unseen.append(name)
         assert not unseen, told(
             f"{self.name}: no golden text is read otherwise without {', '.join(unseen)}",
-            look="the golden file: add lines of these forms, and what they mean",
+            look="the golden file: add lines of these forms, and what they mean; a line that lacks "
+            "what counts where nothing is said; of `driving` a text in [[refused]]",
         )
 
     def _reads(self, language: Reader, text: GoldenText) -> object:
@@ -166,8 +197,8 @@ class GoldenChecks(Subject):
         suite = copy(self)
         suite.__dict__["vendor"] = replace(self.vendor, reader=language)
         try:
-            statements = suite.read_golden(text).statements
-        except (FlybyError, AssertionError) as error:
+            statements = suite.read_files(text).statements
+        except FlybyError as error:
             return type(error)
         return [terms_of(one, self.signals) for one in statements]
 
@@ -251,7 +282,11 @@ class GoldenChecks(Subject):
 def _without_each(
     grammar: type[MotionGrammar],
 ) -> Iterator[tuple[str, type[MotionGrammar]]]:
-    """The grammar, of each of whose forms and settings in turn the lines say nothing."""
+    """The grammar, each of whose forms and settings in turn the lines do not say, or of which
+    something else holds where nothing is said."""
+
+    def other(**parts: object) -> type[MotionGrammar]:
+        return type("Grammar", (grammar,), parts)
 
     def silent(name: str) -> str:
         return f"nothing.{name}"
@@ -259,13 +294,36 @@ def _without_each(
     for name in grammar.forms:
         if name.partition(".")[0] not in ("nothing", "routine"):
             forms = {silent(k) if k == name else k: v for k, v in grammar.forms.items()}
-            yield f"the form {name}", type("Grammar", (grammar,), {"forms": forms})
+            yield f"the form {name}", other(forms=forms)
+    if grammar.driving.pattern != FormGrammar.driving.pattern:
+        yield "`driving`", other(driving=FormGrammar.driving)
     for one in grammar.settings:
-        rest = tuple(other for other in grammar.settings if other is not one)
+        rest = tuple(setting for setting in grammar.settings if setting is not one)
         held = replace(grammar.settings, settings=rest)
         forms = {silent(one.word): one.pattern.pattern.replace("(?P<", "(?P<_"), **grammar.forms}
-        parts = {"forms": forms, "settings": held}
-        yield f"the setting {one.word}", type("Grammar", (grammar,), parts)
+        yield f"the setting {one.word}", other(forms=forms, settings=held)
+        for name, changed in _said_otherwise(one):
+            every = (changed if setting is one else setting for setting in grammar.settings)
+            held = replace(grammar.settings, settings=tuple(every))
+            yield f"{name} of the setting {one.word}", other(settings=held)
+
+
+def _said_otherwise(setting: Setting) -> Iterator[tuple[str, Setting]]:
+    """A setting of which something else holds where a program, or a line, says nothing."""
+
+    def moved(numbers: Sequence[float]) -> tuple[float, ...]:
+        return tuple(number / 2 if number else 1.0 for number in numbers)
+
+    first = setting.initial
+    if first is not None:
+        several = moved(first if isinstance(first, Sequence) else [first])
+        yield "`initial`", replace(setting, initial=several)
+    if setting.omitted:
+        yield "`omitted`", replace(setting, omitted=moved(setting.omitted))
+    if setting.always is not None:
+        yield "`always`", replace(setting, always=None)
+    for word, numbers in setting.words.items():
+        yield f"the word {word!r}", replace(setting, words={**setting.words, word: moved(numbers)})
 
 
 def stated_speeds(move: Move) -> list[str]:

@@ -128,6 +128,11 @@ class Subject:
         return self._golden.texts
 
     @property
+    def golden_refused(self) -> tuple[GoldenText, ...]:
+        """Texts that are refused, by their author's knowledge."""
+        return self._golden.refused
+
+    @property
     def golden_robots(self) -> tuple[GoldenRobot, ...]:
         """Numbers of data sheets."""
         return self._golden.robots
@@ -284,17 +289,25 @@ class Subject:
 
     def read_golden(self, text: GoldenText) -> Program:
         """A golden text as the plugin reads it."""
+        try:
+            return self.read_files(text)
+        except FlybyError as error:
+            look = "the reader: the text runs on a controller, by its author"
+            what = f"{self.name}: golden text {text.about!r} cannot be read: {error}"
+            raise AssertionError(told(what, look=look)) from error
+
+    def read_files(self, text: GoldenText) -> Program:
+        """The program in the files of a golden text.
+
+        Raises:
+            FlybyError: it cannot be read.
+        """
         robot = None if text.robot is None else self.vendor.robot(text.robot)
         with TemporaryDirectory() as folder:
             for file, said in text.files.items():
                 (Path(folder) / file).write_text(said, "utf-8")
             main = Path(folder) / next(iter(text.files))
-            try:
-                return self.vendor.read_file(main, text.entry, robot, Answers(values=text.answers))
-            except FlybyError as error:
-                look = "the reader: the text runs on a controller, by its author"
-                what = f"{self.name}: golden text {text.about!r} cannot be read: {error}"
-                raise AssertionError(told(what, look=look)) from error
+            return self.vendor.read_file(main, text.entry, robot, Answers(values=text.answers))
 
     def written(self, program: Program, robot: Robot) -> Sources:
         """The program as texts; that they are refused when they are read again is a failure."""

@@ -24,6 +24,8 @@ BITING: Mapping[str, str] = {
     "events dropped on writing": _EVENT + "time_s = … }] stated; the text names its robot",
     "events counted from the other end": _EVENT + 'anchor = "start" or "end" }] stated',
     "events without their place": _EVENT + "time_s or distance_mm = … }] that is not 0",
+    "what is to be refused is passed over": "a text in [[refused]]: an option of a motion that is "
+    "not known, a position of a kind that is not read",
     "recordings log nothing": _RECORDED,
     "recordings log at another period": _RECORDED,
     "kept statements lost on reading": 'an output that is set, as a row kind = "Opaque"',

@@ -22,6 +22,7 @@ from ..checks.subject import Subject
 from .mutant import Mutant, has, knows_signals, sets_outputs
 from .wrapping import (
     FaultyRecorder,
+    LenientReader,
     each_move,
     everywhere,
     in_reading,
@@ -173,6 +174,14 @@ def _rarely_logged(vendor: Vendor) -> Vendor:
     return vendor if recorder is None else replace(vendor, recorder=FaultyRecorder(recorder, rarer))
 
 
+def _lenient(vendor: Vendor) -> Vendor:
+    """What is to be refused is passed over."""
+    reader = vendor.reader
+    if reader is None:
+        return vendor
+    return replace(vendor, reader=LenientReader(reader, lambda program: program))
+
+
 def _records(suite: Subject) -> bool:
     return suite.vendor.recorder is not None
 
@@ -274,6 +283,11 @@ MUTANTS = (
     ),
     Mutant("zones lost on reading", in_reading(each_move(_with(zone=FINE))), GOLDEN),
     Mutant("kinds of zone lost", in_reading(each_move(_sphere)), GOLDEN, _has_other_zones),
+    Mutant(
+        "what is to be refused is passed over",
+        _lenient,
+        ("test_golden_texts_are_refused_where_their_author_says",),
+    ),
     Mutant("recordings log nothing", _unlogged, RECORDED, _records),
     Mutant("recordings log at another period", _rarely_logged, RECORDED, _records),
     Mutant(

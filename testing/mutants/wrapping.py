@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ...core.errors import FlybyError
 from ...core.language import Patcher, Reader, Recorder, Sources, Writer
 from ...core.program.move import Move
 from ...core.program.program import Program
@@ -56,6 +58,23 @@ class FaultyReader:
             return made
         read = _FaultyRead(program.reading.read, self.fault)
         return replace(made, reading=replace(program.reading, read=read))
+
+
+@dataclass(frozen=True)
+class LenientReader(FaultyReader):
+    """Passes over what its vendor's own refuses."""
+
+    def read(self, text: str, file: str, options: ReadOptions) -> Program:
+        """See `flyby.core.language.Reader`."""
+        with suppress(FlybyError):
+            return super().read(text, file, options)
+        return Program(())
+
+    def read_file(self, path: Path, options: ReadOptions) -> Program:
+        """See `flyby.core.language.Reader`."""
+        with suppress(FlybyError):
+            return super().read_file(path, options)
+        return Program(())
 
 
 @dataclass(frozen=True)
