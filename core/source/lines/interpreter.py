@@ -437,17 +437,20 @@ class _Interpreter:
             text = self._program.text_of(statement.span)
             name = getattr(statement.build, "__qualname__", "build").replace(".<locals>", "")
             raise PluginFault.of(f"{text!r}: {name}", error, statement.span) from error
-        target, speed, zone, via = (
-            one and (replace(one[1], sources=()) if part in self._computed else one[1])
-            for part, one in zip(("target", "speed", "zone", "via"), found, strict=True)
-        )
+        parts = [one and one[1] for one in found]
+        computed: list[Source | None] = []
+        for k, name in enumerate(("target", "speed", "zone", "via")):
+            if name in self._computed and (one := parts[k]):
+                computed += one.sources
+                parts[k] = replace(one, sources=())
+        target, speed, zone, via = parts
         assert target is not None and speed is not None and zone is not None
         self.meter.move(statement.span)
         for part in filter(None, (target, speed, zone, via)):
             for source in filter(None, part.sources):
                 self._reads.by_move(source, self._out.move_index)
                 self._reads.by_expression(source, self._out.move_index)
-        for source in filter(None, self._standing if self._counted_on else ()):
+        for source in filter(None, (*computed, *(self._standing if self._counted_on else ()))):
             self._reads.by_expression(source, self._out.move_index)
         own = found[0][1].sources if found[0] else ()
         self._standing = (*own, *(self._standing if self._counted_on else ()))

@@ -229,9 +229,14 @@ def patch_program(
     reading = reading_of(program)
     parts = uses(reading.again({}), program, other_change)
 
-    def attempt(in_place: Collection[Ownership]) -> Files:
+    def attempt(in_place: Collection[Ownership], parts: Sequence[Use] = parts) -> Files:
         return patched(program, reading, edits(PatchPlan(parts, literals, options, in_place)))
 
+    # What the program computes of changed numbers may come out as it is to be by itself.
+    stated = [u for u in parts if not (u.changes and u.origin.ownership is Ownership.DERIVED)]
+    if len(stated) < len(parts):
+        with suppress(FlybyError):
+            return attempt(_LITERALS, stated)
     first, *others = _IN_PLACE[options.shared]
     try:
         return attempt(first)

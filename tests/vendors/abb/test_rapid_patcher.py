@@ -281,9 +281,6 @@ def test_a_literal_that_an_expression_reads_is_left_to_it() -> None:
     with pytest.raises(InputError, match=r"move 2 has another target"):
         patched(text, target(0, x=0.6))
     assert "MoveL p2_2,v100" in patched(text, target(0, x=0.6), OWN)
-    both = target(0, x=0.6)(target(1, x=0.6)(program_of({FILE: text})))
-    with pytest.raises(MotionError, match="move 2: target: the program computes it"):
-        patch(both, REFUSE)
 
 
 def test_what_the_program_computes_is_refused_or_gets_a_datum() -> None:
@@ -483,3 +480,17 @@ def test_a_patch_of_a_patch_leads_back(pair: tuple[Program, Program]) -> None:
         back = patch(there.with_moves(before.moves), OWN)
         text = back[FILE].text if back else files[FILE].text
         assert difference(before, program_of({FILE: text})) is None
+
+
+@pytest.mark.parametrize("options", [REFUSE, OWN])
+def test_what_is_computed_of_a_point_goes_with_it(options: PatcherOptions) -> None:
+    """Both are to be 20 mm away: the point's number changes, and the offset stays."""
+    text = module("MoveL Offs(p2,0,0,50), v100, z10, tool0;", "MoveL p2, v100, fine, tool0;")
+    program = program_of({FILE: text})
+    moves = tuple(
+        replace(move, target=moved(move.target, x=0.52))
+        for move in program.moves
+        if isinstance(move, MoveL)
+    )
+    (file,) = patch(program.with_moves(moves), options).values()
+    assert file.text == text.replace("[[500, -100.5 ,", "[[520, -100.5 ,")

@@ -7,6 +7,8 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from flyby.core.dialect import Orientation
 from flyby.core.errors import FlybyError
@@ -147,6 +149,31 @@ def test_motions_end_before_points_and_behind_where_the_robot_stands() -> None:
     for text, said in (("LAPPRO #h, 5\n", "no z"), ("JMOVE #h\nLDEPART 5\n", "no pose")):
         with pytest.raises(FlybyError, match=said):
             read(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["LAPPRO p, 50\nLMOVE p\n", "LMOVE p\nLDEPART 50\n", "LMOVE p\nLDEPART 9\nLDEPART 9\n"]
+)
+@pytest.mark.parametrize("own", [False, True])
+@given(by=st.tuples(*[st.integers(-90, 90)] * 3))
+def test_what_is_computed_of_a_point_goes_with_it(
+    text: str, own: bool, by: tuple[int, int, int]
+) -> None:
+    """A point and what the program computes of it, changed alike: the point's numbers change."""
+    program = read("SPEED 200 MM/S ALWAYS\n" + text)
+    away = Pose(tuple(one / 1000 for one in by))
+    moves = tuple(
+        replace(move, target=replace(move.target, pose=away @ move.target.pose))
+        for move in program.moves
+        if isinstance(move.target, PoseTarget)
+    )
+    options = {"shared": "own", "derived": "own"} if own else {}
+    files = Language().patch(program.with_moves(moves), ROBOT, options)
+    x, y, z = (one + other for one, other in zip((500, 0, 300), by, strict=True))
+    wanted = POINTS.replace("p: 500, 0, 300,", f"p: {x}, {y}, {z},")
+    assert [file.text for file in files.values()] == (
+        [f"{wanted}SPEED 200 MM/S ALWAYS\n{text}"] if any(by) else []
+    )
 
 
 def test_a_point_that_an_approach_reads_gets_a_place_of_its_own_if_asked() -> None:
