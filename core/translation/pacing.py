@@ -8,7 +8,7 @@ sought with which the new robot's emulated move takes as long as the old one's.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import fields, replace
 from typing import Any
 
@@ -122,7 +122,7 @@ class Pacer:
         if k is not None:
             self._keep_time(i, k, speed, words, stated)
             self._keep_share(i, speed, words, stated)
-            self._tell_line(i, k, speed, words)
+            self._tell_line(i, k, speed, words.speeds - {OVERRIDE} | stated.keys())
         return Speed(**self._alone(i, k, stated, words))
 
     def _alone(
@@ -214,33 +214,38 @@ class Pacer:
             stated["duration"] = rounded(float(self._old.peaks.duration[k]))
 
     def _keep_share(self, i: int, speed: Speed, words: MoveWords, stated: dict[str, Any]) -> None:
-        """For a share of the joints' acceleration that is said as one of all accelerations: that
-        of the TCP, which the other controller may not have held, is reduced with it."""
-        share = speed.joint_acceleration_fraction
-        if share == 1.0 or accelerates_by(words) != OVERRIDE or "tcp_acceleration" in stated:
+        """For a share of the joints' acceleration, or an acceleration of the TCP, that is said as a
+        share of all accelerations: those that the other controller may not have held are reduced
+        with it."""
+        share, own = speed.joint_acceleration_fraction, self._target.model.tcp_acceleration
+        along = speed.tcp_acceleration
+        if (share == 1.0 and along is None) or "tcp_acceleration" in stated:
             return
+        if accelerates_by(words) != OVERRIDE:
+            return
+        share = min(share, along / own) if along is not None and own is not None else share
         share *= speed.acceleration_override
         stated[OVERRIDE] = max(self._dialect.least_acceleration_share, self._search.stepped(share))
         self._sought.setdefault(i, OVERRIDE)
 
-    def _tell_line(self, i: int, k: int, speed: Speed, words: MoveWords) -> None:
+    def _tell_line(self, i: int, k: int, speed: Speed, said: Set[str]) -> None:
         limit = speed.reorientation
         reached = float(self._old.peaks.turn[k])
         held = limit is not None and reached > _BINDS * limit and self._old.length[k] >= _STILL
-        if held and "reorientation" not in words.speeds:
+        if held and "reorientation" not in said:
             self._losses.at(
                 i,
                 f"the speed of reorientation ({np.degrees(limit or 0):.4g}°/s), which holds this "
                 "move, has no words: the tool may turn faster",
             )
-        if speed.tcp_acceleration is not None and "tcp_acceleration" not in words.speeds:
+        if speed.tcp_acceleration is not None and said.isdisjoint({"tcp_acceleration", OVERRIDE}):
             self._losses.at(
                 i, f"the acceleration of the TCP ({speed.tcp_acceleration:.4g} m/s²) has no words"
             )
-        self._tell_jerk(i, speed, words)
+        self._tell_jerk(i, speed, said)
 
-    def _tell_jerk(self, i: int, speed: Speed, words: MoveWords) -> None:
-        if speed.jerk_fraction < 1.0 and "jerk_fraction" not in words.speeds:
+    def _tell_jerk(self, i: int, speed: Speed, said: Set[str]) -> None:
+        if speed.jerk_fraction < 1.0 and "jerk_fraction" not in said:
             self._losses.at(i, f"a reduced jerk ({speed.jerk_fraction:.0%}) has no words")
 
     # ---------------------------------------------------------------------- joint moves
@@ -249,7 +254,7 @@ class Pacer:
         """The speed of a joint move by which the new robot turns its axes by ``turned`` (N,)."""
         speed, words, k = self._old.moves[i].speed, self._dialect.joint, self._old.segment.get(i)
         stated = _said(speed, words)
-        self._tell_jerk(i, speed, words)
+        self._tell_jerk(i, speed, words.speeds)
         robot = self._target.robot
         leading = leading_axis(robot, turned)
         share = _acceleration_share(self._old, speed, k)

@@ -557,6 +557,24 @@ def test_a_share_of_acceleration_becomes_what_the_language_has(between, share) -
     assert all(getattr(move.speed, share) < 0.5 for move in made.program.moves[1:])
 
 
+@pytest.mark.parametrize("override", [True, False])
+def test_an_acceleration_of_the_tcp_becomes_an_override_where_there_is_one(
+    between, override
+) -> None:
+    pair = between("ur", "kuka")
+    program = short_lines(pair, tcp_acceleration=0.4)
+    line = ("tcp", *(("acceleration_override",) if override else ()))
+    made = translate(program, side(pair.old), spoken(pair, ("joint_fraction",), line))
+    lost = "the acceleration of the TCP (0.4 m/s²) has no words"
+    assert (lost in messages(made)) is not override
+    times = pair.run_old(program).duration, pair.run_new(made).duration
+    if override:
+        assert times[1] == pytest.approx(times[0], rel=0.03)
+        assert all(0.0 < m.speed.acceleration_override < 0.5 for m in made.program.moves[1:])
+    else:
+        assert times[1] < 0.9 * times[0]
+
+
 def test_a_share_of_acceleration_without_words_is_told(between) -> None:
     pair = between("abb", "kuka")
     program = short_lines(pair, joint_acceleration_fraction=0.1)
