@@ -176,9 +176,10 @@ def _rows(program: Path, made: Solution) -> list[tuple[str, ...]]:
             continue
         span = None if before is None else before.statement
         said = _moved(before, move), *_rise_and_turn(moved.get(index)), _zone(before, move)
-        changed.append(ChangedMove(index, span, said, made.gained.get(index)))
+        changed.append(ChangedMove(index, span, said))
     return [
-        (moves, line, *said, gained) for moves, line, said, gained in changed_rows(program, changed)
+        (moves, line, *said, gained)
+        for moves, line, said, gained in changed_rows(program, changed, made.gained)
     ]
 
 

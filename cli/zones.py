@@ -115,20 +115,13 @@ def _station(
 
 
 def _tell(program: Path, made: ZoneSolution, cell: Cell, written: Sequence[Path]) -> None:
+    changed = [
+        ChangedMove(one.move, one.span, (zone_shown(one.before), zone_shown(one.after), one.limit))
+        for one in made.zones
+    ]
     rows = [
         (moves, line, *zones, gained, limit)
-        for moves, line, (*zones, limit), gained in changed_rows(
-            program,
-            (
-                ChangedMove(
-                    change.move,
-                    change.span,
-                    (zone_shown(change.before), zone_shown(change.after), change.limit),
-                    made.gained.get(change.move),
-                )
-                for change in made.zones
-            ),
-        )
+        for moves, line, (*zones, limit), gained in changed_rows(program, changed, made.gained)
     ]
     print_table(COLUMNS, rows)
     tell_solution(program, made, cell, written)

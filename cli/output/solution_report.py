@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -60,34 +60,42 @@ def _allowed(cell: Cell) -> Sequence[tuple[str, str]]:
 
 
 class ChangedMove(NamedTuple):
-    """A row of a table of changes.
+    """A move of a table of changes.
 
     Args:
         move: index of it.
         span: where it stands; None where nobody knows.
         said: what is said of it.
-        gained: s; None where it is not known.
     """
 
     move: int
     span: Span | None
     said: tuple[str, ...]
-    gained: float | None
 
 
 def changed_rows(
-    program: Path, moves: Iterable[ChangedMove]
+    program: Path, moves: Sequence[ChangedMove], gained: Mapping[int, float]
 ) -> Iterator[tuple[str, str, tuple[str, ...], str]]:
     """Moves, their line, what is said of them, and what is gained there: a line that runs several
-    times is changed once, and is one row with all that it gains."""
+    times is changed once, and is one row with all that it gains.
+
+    Args:
+        program: the main file.
+        moves: that changed.
+        gained: s at the waypoint of each move of the program, changed or not.
+    """
     for alike in in_lines(moves, lambda one: (one.span, one.said)):
         place = short_place(program, alike[0].span)
-        gains = [one.gained for one in alike if one.gained is not None]
+        gains = [gained[one.move] for one in alike if one.move in gained]
         times = f" ×{len(alike)}" if len(alike) > 1 else ""
         numbers = ", ".join(str(one.move + 1) for one in alike[:NAMED])
         more = "" if len(alike) <= NAMED else ", …"
-        gained = gain_shown(sum(gains) if gains else None)
-        yield f"{numbers}{more}", f"{place}{times}", alike[0].said, gained
+        shown = gain_shown(sum(gains) if gains else None)
+        yield f"{numbers}{more}", f"{place}{times}", alike[0].said, shown
+    changed = {one.move for one in moves}
+    left = gain_shown(sum(gain for move, gain in gained.items() if move not in changed))
+    if moves and float(left):
+        yield "others", "", ("",) * len(moves[0].said), left
 
 
 def gain_shown(seconds: float | None) -> str:

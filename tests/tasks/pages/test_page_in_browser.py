@@ -178,6 +178,49 @@ def test_all_that_works_is_reached_by_the_tab_key_and_has_a_name(
     assert order == ["top", "scene", "transport", "plots", "source", "tables"]
 
 
+def test_playback_camera_and_zoom_by_keys_and_pointer(opened: Opened, page: bytes) -> None:
+    view = opened(page)
+    duration = view.evaluate("flyby.session.duration")
+    view.get_by_label("time", exact=True).evaluate(
+        "(e) => { e.value = 0.5 * e.max; e.dispatchEvent(new Event('input')); }"
+    )
+    assert view.evaluate("flyby.session.t") == pytest.approx(0.5 * duration)
+    view.keyboard.press("+")
+    assert view.evaluate("flyby.session.speed") == 2
+    assert view.get_by_label("speed of playback").input_value() == "2"
+    view.keyboard.press("l")
+    view.keyboard.press("End")
+    assert view.evaluate("[flyby.session.loop, flyby.session.t]") == [False, duration]
+    # Without the loop it stands at the end.
+    view.evaluate("flyby.session.seek(flyby.session.duration - 0.05)")
+    view.keyboard.press("Space")
+    view.wait_for_function("() => !flyby.session.playing", timeout=60_000)
+    assert view.evaluate("flyby.session.t") == duration
+    seen = []
+    for key in "1234":
+        view.keyboard.press(key)
+        seen.append(tuple(view.evaluate("flyby.view.camera.position.toArray()")))
+    assert len(set(seen)) == 4
+    view.keyboard.press("f")
+    view.keyboard.press("Home")
+    drawn(view)
+    target, tcp = view.evaluate(
+        "[flyby.view.controls.target.toArray(), flyby.session.track.tcp(0)]"
+    )
+    assert target == pytest.approx(tcp, abs=1e-6)
+    box = view.locator(".u-over").first.bounding_box()
+    y = box["y"] + 20
+    view.mouse.move(box["x"] + 0.25 * box["width"], y)
+    view.mouse.down()
+    view.mouse.move(box["x"] + 0.75 * box["width"], y, steps=4)
+    view.mouse.up()
+    assert view.evaluate("flyby.session.view") == pytest.approx(
+        [0.25 * duration, 0.75 * duration], rel=0.02
+    )
+    view.keyboard.press("z")
+    assert view.evaluate("flyby.session.view") is None
+
+
 def test_tables_are_sorted_and_filtered(opened: Opened, page: bytes) -> None:
     view = opened(page)
     view.get_by_role("tab", name="Moves").click()
