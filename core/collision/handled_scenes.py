@@ -275,7 +275,7 @@ class HandledScenes:
         """Which pairs only get farther from each other on a move, until they are apart."""
         distance = self._distances(scene, move, pairs, step)
         before = ~np.logical_or.accumulate(distance >= self._clearance + APART)
-        falls = (np.diff(distance, axis=0) < -_OFF) & before[1:]
+        falls = (distance < np.maximum.accumulate(distance, axis=0) - _OFF) & before
         return np.asarray((distance[-1] > distance[0] + _OFF) & ~falls.any(axis=0))
 
     def _drawn(self, scene: CollisionScene, pairs: IntArray) -> BoolArray:

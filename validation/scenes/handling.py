@@ -44,6 +44,8 @@ APART = 0.018
 """m beyond the clearance, from where pairs surely count as apart."""
 JUST_APART = 1.2e-3
 """m beyond the clearance, from where a pair is not let go on the next move."""
+AGAIN = 5e-4
+"""m more by which a pair surely goes into each other again; how far it was out sampling says."""
 OFF = 1e-4
 """m by which a part is farther from what it rests on at the end of a move that lifts it."""
 GRIP, OPEN = Opaque("grip on", True), Opaque("grip off", True)
@@ -264,7 +266,8 @@ def worst_fault(cell: Cell, handling: Handling, path: Path, clearance: float = 0
 
     Made apart from the proofs: the rules once more, pair by pair and sample by sample. A pair that
     touches where a part is taken or released keeps the clearance once it has surely been apart,
-    and is no deeper before than where it was taken or released; others always keep it. It may take
+    and is no deeper before than where it was taken or released, nor goes into each other again;
+    others always keep it. It may take
     several moves until it is apart, if it goes on coming apart on each behind the first.
 
     Args:
@@ -319,10 +322,13 @@ def _let_go(ways: Sequence[_MoveSamples], names: Set[str], way: int, clearance: 
     scene = ways[0].scene
     for first in range(len(scene.pairs)):
         bodies = scene.bodies[scene.pairs[first][0]], scene.bodies[scene.pairs[first][1]]
-        floor = _floor(*bodies, names, float(ways[0].distance[::way][0, first]), clearance)
+        at_end = float(ways[0].distance[::way][0, first])
+        floor = _floor(*bodies, names, at_end, clearance)
         if floor is None:
             continue
         drawn = BodyKind.HELD not in {body.kind for body in bodies}
+        meshed = any(isinstance(body.solid, TriangleMesh) for body in bodies)
+        best, back = -np.inf, RESTING + AGAIN + max(at_end, 0.0)
         row: int | None = first
         for k, samples in enumerate(ways):
             row = first if k == 0 else samples.row(bodies)
@@ -332,7 +338,10 @@ def _let_go(ways: Sequence[_MoveSamples], names: Set[str], way: int, clearance: 
             if k and not _lifted(d, clearance):
                 break
             apart = np.logical_or.accumulate(d >= clearance + APART)
-            least[~apart] = np.minimum(least[~apart], floor)
+            come = np.maximum.accumulate(np.append(best, d))[1:]
+            best = float(come[-1])
+            kept = np.full(len(d), floor) if meshed or floor >= 0.0 else come - back
+            least[~apart] = np.minimum(least, np.maximum(kept, floor))[~apart]
             if d.max() >= clearance + JUST_APART or not (drawn or d[-1] > d[0] + OFF):
                 break
 
@@ -340,7 +349,7 @@ def _let_go(ways: Sequence[_MoveSamples], names: Set[str], way: int, clearance: 
 def _lifted(distance: FloatArray, clearance: float) -> bool:
     """Whether a pair only gets farther from each other until it is apart."""
     before = ~np.logical_or.accumulate(distance >= clearance + JUST_APART)
-    falls = bool(((np.diff(distance) < -OFF) & before[1:]).any())
+    falls = bool(((distance < np.maximum.accumulate(distance) - OFF) & before).any())
     return bool(distance[-1] > distance[0] + OFF) and not falls
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...arrays import BoolArray, FloatArray, IntArray
 from ...motion.path.path import Path
-from ..scene.handled_pairs import APART, ApartRows, apart_rows
+from ..scene.handled_pairs import APART, ApartRows, apart_rows, least_kept
 from ..scene.scene import CollisionScene, TouchingPairs
 from .enclosure import Span
 from .findings import FailureCause, UnprovenStretch
@@ -62,7 +62,7 @@ class TouchingProof:
         """What is not proven of them."""
         touching = self.touching
         rows, distance = self._sampled()
-        found: list[SceneFinding] = []
+        found = list(self._back_in(rows, distance))
         left = np.arange(len(touching.floor))
         before: dict[int, list[SceneFinding]] = {}
         for slack in _SLACKS:
@@ -98,6 +98,35 @@ class TouchingProof:
         rows = np.flatnonzero(np.isin(self.path.sample_moves(), list(self.moves)))
         within = self.wanted + self.residual + _SLACKS[-1]
         return rows, self.touching.scene.distances(self.path.q[rows], within).distance
+
+    def _back_in(self, rows: IntArray, distance: FloatArray) -> Iterator[SceneFinding]:
+        """Where pairs have gone into each other again, or on across, before they were apart."""
+        touching, scene, path = self.touching, self.touching.scene, self.path
+        limit = self.wanted + self.residual + APART
+        apart = apart_rows(distance, limit, touching.floor)
+        least = least_kept(touching, path.q[rows], distance, apart)
+        asked = np.zeros(len(rows), dtype=np.bool_)
+        for first, last in self.spans:
+            asked |= (path.sigma[rows] >= first) & (path.sigma[rows] <= last)
+        deep = (distance < least) & np.isfinite(least) & asked[:, None]
+        deep &= least > touching.floor.min(axis=1)
+        for pair in np.flatnonzero(deep.any(axis=0)).tolist():
+            k = int(np.where(deep[:, pair], distance[:, pair], math.inf).argmin())
+            row = int(rows[k])
+            sigma, kept = float(path.sigma[row]), float(least[k, pair])
+            piece = int(np.searchsorted(path.pieces.first_sample, row, "right")) - 1
+            stretch = UnprovenStretch(
+                FailureCause.NEAR,
+                piece,
+                sigma,
+                sigma,
+                sigma,
+                path.q[row],
+                0,
+                float(distance[k, pair]),
+                1.0,
+            )
+            yield SceneFinding(scene.of_pairs(scene.pairs[pair : pair + 1]), stretch, kept)
 
     def _too_deep(self, left: IntArray, apart: ApartRows, rows: IntArray) -> list[SceneFinding]:
         """Where pairs go deeper into each other than they may, before they are apart and behind.

@@ -22,6 +22,10 @@ BESIDE = 0.01
 APART = 1e-3
 """m beyond what has to be kept, from which pairs that touched count as apart."""
 
+_FAR = 0.02
+"""m that a tool is moved along a part, and twice its depth, before it has come out of it by
+`RESTING`."""
+
 
 class AtHandling(NamedTuple):
     """Pairs that may touch at an end of a move where parts are taken or released.
@@ -153,6 +157,45 @@ def apart_rows(distance: FloatArray, limit: float, floor: FloatArray) -> ApartRo
     return ApartRows(np.where(some, first, count), np.where(some, last, -1))
 
 
+def least_kept(
+    touching: TouchingPairs, q: FloatArray, distance: FloatArray, apart: ApartRows
+) -> FloatArray:
+    """Signed distances (M, K) m that pairs keep along a way where they touch; infinite elsewhere.
+
+    Next to its ends that is the floor. Farther on it is how far the two things have come apart
+    already, less `RESTING`: a tool that draws back from a part does not go into it again. Nor does
+    it go on across it: moved by more than it takes to get out, it has begun to.
+
+    Args:
+        touching: pairs that may touch at an end of the way.
+        q: (M, N), along it.
+        distance: (M, K) m, there.
+        apart: where they are apart.
+    """
+    scene, floor = touching.scene, touching.floor
+    bodies = [[scene.bodies[k] for k in pair] for pair in scene.pairs.tolist()]
+    things = [tuple(body.thing for body in pair) for pair in bodies]
+    both = np.empty_like(distance)
+    for names in set(things):
+        alike = [pair == names for pair in things]
+        both[:, alike] = distance[:, alike].min(axis=1, keepdims=True)
+    drawn = np.array([all(body.kind is not BodyKind.HELD for body in pair) for pair in bodies])
+    # How deep something goes into a mesh is not known, and what is only beside a part is so on.
+    steady = touching.meshed | (floor >= 0.0).T
+    row = np.arange(len(q))[:, None]
+    least = np.full_like(distance, math.inf)
+    for end, at in ((0, row < apart.first), (-1, row > apart.last)):
+        step = 1 if end == 0 else -1
+        come = np.maximum.accumulate(both[::step], axis=0)[::step]
+        come = come - np.maximum(both[end], 0.0) - RESTING
+        deep = np.minimum(both[end], 0.0)
+        across = drawn & (scene.shifts(q, q[end]) > _FAR - 2.0 * deep)
+        come = np.maximum(come, np.where(across, deep + RESTING, -math.inf))
+        kept = np.where(steady[end], floor[:, end], np.maximum(floor[:, end], come))
+        least = np.where(at, np.minimum(least, kept), least)
+    return least
+
+
 def counted_distances(touching: TouchingPairs, q: FloatArray, clearance: float) -> FloatArray:
     """Signed distances (M, K) m at samples along a way, as far as they count; infinite elsewhere.
 
@@ -165,16 +208,13 @@ def counted_distances(touching: TouchingPairs, q: FloatArray, clearance: float) 
         clearance: m, kept where they are apart.
     """
     distance = touching.scene.distances(q, clearance + APART).distance
-    floor = touching.floor
-    apart = apart_rows(distance, clearance + APART, floor)
+    apart = apart_rows(distance, clearance + APART, touching.floor)
     row = np.arange(len(q))[:, None]
-    before, behind = row < apart.first, row > apart.last
-    least = np.minimum(
-        np.where(before, floor[:, 0], math.inf), np.where(behind, floor[:, 1], math.inf)
-    )
+    touches = (row < apart.first) | (row > apart.last)
+    least = least_kept(touching, q, distance, apart)
     deep = distance < least
     if touching.shrunk is not None:
         into_mesh = touching.meshed & (least < 0.0)
         deep[into_mesh] = touching.shrunk.distances(q, APART).distance[into_mesh] <= 0.0
     near = distance < max(clearance, TOUCH)
-    return np.where(np.where(before | behind, deep, near), distance, math.inf)
+    return np.where(np.where(touches, deep, near), distance, math.inf)

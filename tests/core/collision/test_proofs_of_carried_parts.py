@@ -19,7 +19,7 @@ from flyby.core.collision.proof.verdict import Certificate, Verdict, VerdictRead
 from flyby.core.handling.handling import handling_of
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.emulator.run import Run
-from flyby.core.program.move import MoveC, MoveL, Opaque
+from flyby.core.program.move import Move, MoveC, MoveL, Opaque
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import PoseTarget
@@ -166,6 +166,40 @@ def test_a_tool_goes_no_deeper_into_a_part_than_where_it_takes_it() -> None:
         meter = ClearanceMeter(cell_with(FLOOR), program, handling_of(program, cell_with(FLOOR)))
         met = nearest_of(meter.over(CONTROLLER.run(program).path, 0))[0]
         assert met is not None and met.overlaps is not clear
+
+
+@pytest.mark.parametrize(
+    ("away", "keeps"),
+    [
+        ([to(0.6, -0.2, 0.3)], True),
+        ([to(0.6, -0.08, 0.088)], True),
+        ([to(0.68, -0.2, 0.3)], True),
+        # Along the bar, all the way or until it ends; and into it again, once nearly out.
+        ([to(0.72, -0.2, 0.07), to(0.72, -0.2, 0.3)], False),
+        ([to(0.9, -0.2, 0.07)], False),
+        (
+            [MoveC(place(0.68, -0.2, 0.07), SLOW, FINE, tool=GRIP, via=place(0.64, -0.2, 0.1))],
+            False,
+        ),
+    ],
+    ids=["up", "aside", "aslant", "along, then up", "out of its end", "out and in"],
+)
+def test_a_tool_draws_back_from_a_part_and_not_across_it(away: list[Move], keeps: bool) -> None:
+    """It is no deeper in the bar there than where it puts it down."""
+    bar = replace(crate(near=0.04), geometry=Geometry(Box((0.4, 0.1, 0.1)), Pose((0.6, 0.2, 0.05))))
+    cell = replace(cell_with(FLOOR, parts=(bar,)), clearance=0.005)
+    there = [to(0.6, 0.2, 0.3), to(0.6, 0.2, 0.07), ON, to(0.6, 0.2, 0.3), to(0.6, -0.2, 0.3)]
+    program = Program((*there, to(0.6, -0.2, 0.07), OFF, *away))
+    made = proof(program, cell, 0.005)
+    assert made.proven is keeps
+    met = nearest_of(
+        ClearanceMeter(cell, program, handling_of(program, cell)).over(
+            CONTROLLER.run(program).path, 0
+        )
+    )[0]
+    assert met is not None and met.overlaps is not keeps
+    if not keeps:
+        assert made.verdict is Verdict.VIOLATED and set(made.pair or ()) == {"crate", "grip"}
 
 
 def test_depth_into_a_mesh_is_judged_by_a_smaller_part() -> None:
