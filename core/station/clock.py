@@ -45,7 +45,7 @@ class Schedule:
         begin: s, when its program begins.
         end: s, when it has ended; infinite if it never does.
         waits: in their order.
-        lag: s by which the motion is behind its command.
+        lag: s by which the motion is behind its command on average, and up to twice as much.
         pace: at which its own time passes.
         ready: waits that held it up for no time, and s for which what they wait for was there.
     """
@@ -59,11 +59,15 @@ class Schedule:
     ready: tuple[tuple[Action, float], ...] = ()
 
     def clocked(self, own: FloatArray) -> FloatArray:
-        """The station's time of spans of the robot's own (L, 2) s: from when, until when."""
-        at = np.array([spell.action.time for spell in self.waits]) + self.lag
+        """The station's time of spans of the robot's own (L, 2) s: from when, until when.
+
+        From when its command stands until its motion does, a robot may still be coming to where it
+        waits, or be about to leave.
+        """
+        at = np.array([spell.action.time for spell in self.waits])
         spent = np.array([spell.end - spell.begin for spell in self.waits])
         passed = np.append(0.0, np.cumsum(spent))
-        before = passed[np.searchsorted(at, own[:, 0] - 1e-9, "left")]
+        before = passed[np.searchsorted(at + 2.0 * self.lag, own[:, 0] - 1e-9, "left")]
         behind = passed[np.searchsorted(at, own[:, 1] + 1e-9, "right")]
         return np.asarray(self.pace.passed(own) + self.begin + np.stack([before, behind], -1))
 
