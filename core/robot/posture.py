@@ -17,6 +17,9 @@ from ..errors import InputError
 from .kinematics.arm_geometry import Family
 from .model import Robot
 
+_UPRIGHT = 0.25
+"""Share of its length up to which an arm leans to neither side."""
+
 
 class Posture(NamedTuple):
     """Signed quantities that vanish where two solutions meet.
@@ -41,7 +44,8 @@ def posture(robot: Robot, q: ArrayLike, front: ArrayLike | None = None) -> Postu
         robot: the robot.
         q: (N,) rad and m.
         front: (3,), what points to the front with joint 1 at zero, in the robot's base; None for
-            the side on which the wrist's centre lies with all joints at zero.
+            the side on which the wrist's centre lies with all joints at zero, or of an arm that
+            stands upright there, within the ranges of its axes 2 and 3 on average.
 
     Raises:
         InputError: axis 2 turns the arm across ``front``.
@@ -63,13 +67,30 @@ def posture(robot: Robot, q: ArrayLike, front: ArrayLike | None = None) -> Postu
         # A palletiser's axis 6 stands off the joint that keeps the flange level.
         x, _, z = -arm.centre_to_fourth
         hand = complex(x, z) * cmath.exp(-1j * (turned + arm.signs[3] * q4))
-    ahead = math.copysign(1.0, wrist.real) if front is None else _ahead(robot, arm.frame[0], front)
+    if front is not None:
+        ahead = _ahead(robot, arm.frame[0], front)
+    elif abs(wrist.real) > _UPRIGHT * (abs(lower) + abs(fore)):
+        ahead = math.copysign(1.0, wrist.real)
+    else:
+        lowest, highest = (known.angles(q[:6]) for q in (robot.limits.lower, robot.limits.upper))
+        turns = (_mean_turn(lowest[k], highest[k]) for k in (1, 2))
+        second, third = next(turns), next(turns)
+        third = third if arm.signs[2] > 0 else third.conjugate()
+        usual = shoulder + second * (elbow - shoulder + third * (wrist - elbow))
+        ahead = math.copysign(1.0, usual.real)
     up = math.copysign(1.0, arm.frame[2, 2])
     return Posture(
         shoulder=ahead * (shoulder + lower + fore + hand).real,
         elbow=-ahead * up * (lower.conjugate() * fore).imag / abs(lower),
         wrist=math.remainder(float(own[4]), math.tau),
     )
+
+
+def _mean_turn(lower: float, upper: float) -> complex:
+    """What turns by all angles between two come to on average."""
+    if lower == upper:
+        return cmath.exp(-1j * lower)
+    return (cmath.exp(-1j * lower) - cmath.exp(-1j * upper)) / (1j * (upper - lower))
 
 
 def _ahead(robot: Robot, forward: np.ndarray, front: ArrayLike) -> float:
