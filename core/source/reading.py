@@ -9,6 +9,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from ..display import counted, in_line
+from ..door import spelt
 from ..errors import FlybyError, Note, SourceError
 from ..program.question import QuestionKind
 from .execution.answers import Answers, stands_in
@@ -210,26 +211,36 @@ def _to_an_end(
     options: ReadOptions,
     read: Callable[[Files, str, ReadOptions], Program],
 ) -> Program:
-    """Read; of loops that go on for more moves than a program may have, one pass is read.
+    """Read; of loops that go on for more moves than a program may have, one pass is read where
+    programs go on behind what nobody knows.
 
     Raises:
-        SourceError: it cannot be read, or goes on without a loop.
+        SourceError: it cannot be read, or goes on for ever.
     """
-    notes: list[Note] = []
     while True:
         try:
-            program = read(files, main, options)
-            return replace(program, notes=(*notes, *program.notes))
+            return read(files, main, options)
         except SourceError as error:
             if not isinstance(error, EndlessError):
                 _name_answers(error, files, options.answers)
                 raise
-            answers, place = options.answers, error.loop and f"{error.loop.file}:{error.loop.line}"
-            if place is None or answers.at("passes", place) is not None:
+            answers, loop = options.answers, error.loop
+            place = None if loop is None else f"{loop.file}:{loop.line}"
+            if loop is None or place is None or not answers.goes_on:
                 raise
-            count = answers.cycles
-            passes = "one pass" if count == 1 else f"{count} passes"
-            message = f"the loop goes on for more moves than are read: {passes} of it, and on"
-            notes.append(Note(message, span=error.loop))
-            answers = answers.with_passes(place, count)
-            options = replace(options, answers=answers)
+            if answers.at("passes", place) is not None:
+                raise
+            why = _cut_short(error, answers.cycles) if error.ends else ""
+            options = replace(options, answers=answers.with_cut(loop, answers.cycles, why))
+
+
+def _cut_short(error: EndlessError, driven: int) -> str:
+    """Why no more than some passes of a loop are driven, and what would drive more of them."""
+    assert error.loop is not None
+    place = f"{PurePath(error.loop.file).name}:{error.loop.line}"
+    passes = "one pass is" if driven == 1 else f"{driven} passes are"
+    return (
+        f"the loop goes on for more moves than are read ({error.what}): {passes} driven, and no "
+        f"time is claimed for the others; say in a file ({spelt('answers')}) how many are driven: "
+        f'[passes] "{place}" = …'
+    )

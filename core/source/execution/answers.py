@@ -43,6 +43,8 @@ class Answers:
         mends: whether what is no statement of the language is stepped over. Else it is refused.
         cycles: passes of a loop without an end that moves the robot.
         signals: what signals are called on other robots; a reader does not ask for them.
+        cut: why loops are left before their end, as they go on for more moves than are read; empty
+            of a loop that has none, in which the program ends.
     """
 
     values: Mapping[str, Answer] = field(default_factory=dict)
@@ -57,6 +59,7 @@ class Answers:
     cycles: int = 1
     signals: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)
+    cut: Mapping[str, str] = field(default_factory=dict)
 
     def names(self, table: str) -> Iterable[str]:
         """What a table of the file has answers to, in their order."""
@@ -72,9 +75,19 @@ class Answers:
         }
         return own[table]
 
-    def with_passes(self, place: str, count: int) -> Answers:
-        """The same, with the passes of one more loop."""
-        return replace(self, passes={**self.passes, placed(place): count})
+    def with_cut(self, loop: Span, count: int, why: str) -> Answers:
+        """The same, with one more loop that is left after some passes.
+
+        Args:
+            why: see the arguments of the class.
+        """
+        place = placed(f"{loop.file}:{loop.line}")
+        passes, cut = {**self.passes, place: count}, {**self.cut, place: why}
+        return replace(self, passes=passes, cut=cut)
+
+    def cut_short(self, loop: Span) -> str | None:
+        """Why a loop is left before its end; None if it is not."""
+        return self.cut.get(placed(f"{loop.file}:{loop.line}"))
 
     def with_branch(self, place: str, number: int) -> Answers:
         """The same, with the branch of one more condition."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Generic
+from typing import Generic, NoReturn
 
+from ...display import counted
 from ...door import spelt
-from ...errors import Span
+from ...errors import SourceError, Span
 from ...program.cycle import Cycle
 from .analysis import Analysis
 from .branches import Branches, Skip
@@ -21,9 +22,11 @@ taken that nobody can decide."""
 FOLLOWED_UNMOVED = 1000
 """The same where it has a condition, which may well end it, or does not move the robot."""
 FORESEEN = 100
-"""Passes after which it is foreseen how many more a loop has that moves the robot, and that nothing
-but its condition ends: from how far that came nearer to its end in the second half of them, if it
-did so evenly in both halves of that."""
+"""Passes after which it is foreseen how many more a loop has that nothing but its condition ends:
+from how far that came nearer to its end in the second half of them, if it did so evenly in both
+halves of that."""
+_MEASURED = 3
+"""Distances that this takes."""
 _EVEN = 1e-9
 """Share by which such halves may differ."""
 _UNMOVED = "does not move the robot, as nothing fulfils the conditions of its motion"
@@ -63,8 +66,10 @@ class Endings(Generic[Block]):
     def look(self, passes: Passes[Block]) -> None:
         """A pass begins: remember what decides when the loop ends, as it is now."""
         host, loop = self._host, passes.loop
-        passes.mark = host.outputs.mark()
         passes.begun.append(host.meter.moves)
+        if self._runs_out(passes):
+            return
+        passes.mark = host.outputs.mark()
         if not passes.looked or passes.skips != self._branches.skips:
             passes.watched = self._deciding(passes)
             passes.written = self._analysis.written(loop.body) | loop.writes
@@ -158,6 +163,8 @@ class Endings(Generic[Block]):
 
     def left(self, passes: Passes[Block], run: Callable[[Block], bool]) -> bool:
         """Whether a loop is left after a pass though its condition lets it go on."""
+        if self._runs_out(passes):
+            return False
         host, loop = self._host, passes.loop
         moving = self._analysis.moves(loop.body)
         moved = self._has_moved(passes)
@@ -189,7 +196,7 @@ class Endings(Generic[Block]):
                 loop.ended()
             return True
         if gets_on:
-            if moving and answer is None:
+            if answer is None:
                 self._look_ahead(passes)
             return self._passed(passes, answer) or self._too_long(passes)
         if self._left_to_others(passes):
@@ -204,26 +211,41 @@ class Endings(Generic[Block]):
         self._satisfy(loop, moving, run)
         return True
 
+    def _runs_out(self, passes: Passes[Block]) -> bool:
+        """Whether a loop counts to its end, as was foreseen, whatever it does until then."""
+        return passes.runs_out and passes.start.skips == self._branches.skips
+
     def _look_ahead(self, passes: Passes[Block]) -> None:
-        """Refuse a loop that would go on for more moves than are read as soon as that shows.
+        """Foresee how long a loop runs.
 
         Raises:
-            SourceError: it would.
+            SourceError: it would go on for more moves than are read.
         """
         loop, meter = passes.loop, self._host.meter
         half = FORESEEN // 2
-        if passes.count == half and not self._analysis.ways_out(loop.body):
+        if passes.count == half:
             passes.distances, passes.moved = [loop.distance()], meter.moves
+            passes.row = meter.row
         elif passes.distances and passes.count in (half + half // 2, FORESEEN):
             passes.distances.append(loop.distance())
-        if passes.count != FORESEEN or None in passes.distances or not passes.distances:
-            return
-        first, middle, distance = (float(one) for one in passes.distances if one is not None)
-        nearer = (first - distance) / half
-        if nearer == 0.0 or abs(first - 2.0 * middle + distance) > _EVEN * abs(first - distance):
-            return  # it comes nearer now and then, or faster and faster
-        left = distance / nearer if nearer > 0 else math.inf
-        meter.ahead(left, (meter.moves - passes.moved) / half, loop.words, loop.span)
+        known = len(passes.distances) == _MEASURED and None not in passes.distances
+        if passes.count == FORESEEN and known and not self._analysis.ways_out(loop.body):
+            first, middle, distance = (float(one) for one in passes.distances if one is not None)
+            nearer, bend = (first - distance) / half, first - 2.0 * middle + distance
+            # Else it comes nearer now and then, or faster and faster.
+            if nearer != 0.0 and abs(bend) <= _EVEN * abs(first - distance):
+                left = distance / nearer if nearer > 0 else math.inf
+                moves = (meter.moves - passes.moved) / half
+                meter.ahead(left, moves, loop.words, loop.span)
+                fits = moves > 0 or meter.has_room(left * (meter.row - passes.row) / half)
+                passes.runs_out, passes.left = fits, None if fits else left
+        if self._has_moved(passes) and not passes.runs_out:
+            meter.passed(passes.count, lambda: self._nears(passes), loop.words, loop.span)
+
+    def _nears(self, passes: Passes[Block]) -> bool:
+        """Whether a loop has come nearer to its end since half way to what was foreseen of it."""
+        now, before = passes.loop.distance(), next(iter(passes.distances), None)
+        return now is not None and before is not None and now < before
 
     def _polls(self, passes: Passes[Block]) -> bool:
         """Whether a loop that does not come to move the robot by itself waits for others to tell it
@@ -261,36 +283,50 @@ class Endings(Generic[Block]):
         return False
 
     def _passed(self, passes: Passes[Block], answer: int | None) -> bool:
-        """Whether the user says that a loop which goes on has gone on enough."""
+        """Whether a loop which goes on has gone on enough: as the user says, or as no more of it
+        is read."""
         if answer is None or passes.count < answer:
             return False
-        passes.loop.ended()
+        host, loop = self._host, passes.loop
+        loop.ended()
+        why = host.course.answers.cut_short(loop.span)
+        if why is not None:
+            self._cycle(passes)
+            if not why:
+                self._end(passes, f"({loop.words})")
+            host.open_move(SourceError(why, loop.span), loop.span)
         return True
 
     def _too_long(self, passes: Passes[Block]) -> bool:
         """Whether a loop counts on and on without a move: it passes time, or waits for others.
 
-        It is left once as many statements are executed as a program may execute in a row; from then
-        on after its first pass.
+        It is left as soon as it is foreseen that it has more statements than a program may execute
+        in a row, or once as many are executed; from then on after its first pass.
         """
         host, loop = self._host, passes.loop
         meter = host.meter
-        if self._has_moved(passes):
+        if self._has_moved(passes) or passes.runs_out:
             return False
-        if loop.span not in self._long and meter.row - passes.start.statements < meter.patience:
+        foreseen = loop.span in self._long or passes.left is not None
+        if not foreseen and meter.row - passes.start.statements < meter.patience:
             return False
         if self._leave_motion_to_others(passes):
             return False
-        if loop.span not in self._long:
-            self._long.add(loop.span)
-            host.note_once(
-                f"long {loop.span.file}:{loop.span.start}",
-                f"the loop ({loop.words}) has run {passes.count} times without a move and goes on: "
-                "it is left, as one that only passes time",
-                loop.span,
-            )
+        self._long.add(loop.span)
         meter.row = passes.start.statements
         loop.ended()
+        made = self._analysis.written(loop.body) - loop.reads - loop.writes
+        went = f"the loop ({loop.words}) has run {passes.count} times without a move and goes on"
+        if passes.left is not None and passes.left != math.inf and made:
+            # What it would have made of them is not what it has made of them so far.
+            message = f"{went} for {passes.left:.6g} more: what it makes of {_named(made)} is lost"
+            if host.open_move(SourceError(message, loop.span), loop.span):
+                return True
+        host.note_once(
+            f"long {loop.span.file}:{loop.span.start}",
+            f"{went}: it is left, as one that only passes time",
+            loop.span,
+        )
         return True
 
     def _cycle(self, passes: Passes[Block]) -> None:
@@ -357,11 +393,20 @@ class Endings(Generic[Block]):
         if passes.count < (answer or cycles):
             return
         self._cycle(passes)
-        loop = passes.loop
-        words, what = f"({loop.words})", "the program ends there"
-        if moving and self._has_moved(passes):
-            once = passes.count == 1
-            what = "one pass is read" if once else f"{passes.count} passes are read"
-        elif moving:
+        words = f"({passes.loop.words})"
+        if moving and not self._has_moved(passes):
             words = f"{words} that {_UNMOVED}"
-        self._host.finish(f"the program is an endless loop {words}: {what}", loop.span)
+        self._end(passes, words)
+
+    def _end(self, passes: Passes[Block], words: str) -> NoReturn:
+        """End the program in a loop that nothing ends."""
+        what = "the program ends there"
+        if self._has_moved(passes):
+            what = "one pass is read" if passes.count == 1 else f"{passes.count} passes are read"
+        self._host.finish(f"the program is an endless loop {words}: {what}", passes.loop.span)
+
+
+def _named(names: frozenset[str]) -> str:
+    """Some data, shortly."""
+    first, *more = sorted(names)
+    return first if not more else f"{first} and {counted(more, 'other datum', 'other data')}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
-from ...errors import Span
+from ...errors import SourceError, Span
 from .course import Course
 from .limits import Meter
 from .outputs import Outputs
@@ -78,6 +78,11 @@ class Host(Protocol):
         Returns:
             Names of those that are unknown now and were not before, as declared.
         """
+        ...
+
+    def open_move(self, error: SourceError, span: Span) -> bool:
+        """Whether the program goes on behind what cannot be carried out, which stays in it as a
+        move that is open: from there on nobody knows where the robot stands."""
         ...
 
     def pause(self, text: str, span: Span) -> None:

@@ -20,13 +20,13 @@ class ExecutionLimits:
     Args:
         statements: executed in a row without a move among them.
         moves: executed that had been before: a long program without a loop is none without an end.
-        repeats: of one and the same move.
+        passes: of a loop that moves the robot and of which nothing tells when it ends.
         calls: routines that have called each other.
     """
 
     statements: int = 100_000
     moves: int = 20_000
-    repeats: int = 2_000
+    passes: int = 2_000
     calls: int = 40
 
 
@@ -39,13 +39,22 @@ def _remedy() -> str:
 class EndlessError(SourceError):
     """A program goes on and on.
 
+    Args:
+        what: goes on, and how.
+        span: where that shows.
+        foreseen: whether it is the loop that stands there.
+        ends: whether the loop has an end, as far as can be foreseen.
+
     Attributes:
         loop: the outermost one that was under way again and again; None if there is none.
-        foreseen: whether it is that loop itself that goes on.
     """
 
-    loop: Span | None = None
-    foreseen: bool = False
+    def __init__(self, what: str, span: Span, *, foreseen: bool = False, ends: bool = True) -> None:
+        super().__init__(f"{what}. {_remedy()}", span)
+        self.what = what
+        self.foreseen = foreseen
+        self.ends = ends
+        self.loop: Span | None = span if foreseen else None
 
 
 class Meter:
@@ -65,7 +74,7 @@ class Meter:
         self._executed = executed
         self.row = 0
         self.moves = 0
-        self._repeats: dict[tuple[str, int, int], int] = {}
+        self._places: set[tuple[str, int, int]] = set()
         self._calls = 0
 
     @property
@@ -94,12 +103,9 @@ class Meter:
         """
         self.moves += 1
         self.row = 0
-        place = (span.file, span.line, span.column)
-        repeats = self._repeats[place] = self._repeats.get(place, 0) + 1
-        if self.moves - len(self._repeats) > self._limits.moves:
+        self._places.add((span.file, span.line, span.column))
+        if self.moves - len(self._places) > self._limits.moves:
             raise _endless(f"{self._limits.moves} moves are executed again", span)
-        if repeats > self._limits.repeats:
-            raise _endless(f"this move is executed {self._limits.repeats} times", span)
 
     def ahead(self, passes: float, moves: float, words: str, span: Span) -> None:
         """A loop will run for so many passes more, with so many moves each.
@@ -111,18 +117,31 @@ class Meter:
         Raises:
             SourceError: that is more than a program may move.
         """
-        if moves < 1 or (passes <= self._limits.repeats and passes * moves <= self._limits.moves):
+        if not moves or passes * moves <= self._limits.moves:
             return
-        left = (
-            "comes no nearer to its end" if passes == math.inf else f"has {passes:.6g} passes left"
-        )
-        error = EndlessError(
-            f"{words} {left}, with {moves:.3g} moves each: more than the {self._limits.repeats} "
-            f"passes or {self._limits.moves} moves that are read. {_remedy()}",
-            span,
-        )
-        error.loop, error.foreseen = span, True
-        raise error
+        ends = passes != math.inf
+        left = f"has {passes:.6g} passes left" if ends else "comes no nearer to its end"
+        what = f"{words} {left}, with {moves:.3g} moves each: more than the {self._limits.moves}"
+        raise EndlessError(f"{what} that are read", span, foreseen=True, ends=ends)
+
+    def passed(self, passes: int, nears: Callable[[], bool], words: str, span: Span) -> None:
+        """A loop that moves the robot has run for so many passes.
+
+        Args:
+            nears: whether it has come nearer to its end, as far as anything shows it.
+            words: what messages call it.
+            span: of it.
+
+        Raises:
+            SourceError: these are too many for one of which nothing tells when it ends.
+        """
+        if passes == self._limits.passes and not nears():
+            what = f"{words} has run {passes} times, and nothing tells when it ends"
+            raise EndlessError(what, span, foreseen=True)
+
+    def has_room(self, statements: float) -> bool:
+        """Whether so many statements more may be executed in a row."""
+        return self.row + statements <= self._limits.statements
 
     def call(self, name: str, span: Span) -> None:
         """A routine is entered; `back` is called when it is left.
@@ -144,7 +163,4 @@ class Meter:
 
 
 def _endless(what: str, span: Span) -> EndlessError:
-    return EndlessError(
-        f"{what} and the program has not ended: a loop without end? {_remedy()}",
-        span,
-    )
+    return EndlessError(f"{what} and the program has not ended: a loop without end?", span)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic
@@ -21,6 +22,14 @@ def to_bound(symbol: str, counter: object, bound: object) -> float | None:
         if not isinstance(value, int | float) or isinstance(value, bool):
             return None
     return None if sign is None else sign * (float(bound) - float(counter))  # type: ignore[arg-type]
+
+
+def passes_to(start: object, stop: object, step: object) -> int | None:
+    """How often a loop runs that counts; None where nothing but numbers would tell."""
+    found = [one for one in (start, stop, step) if isinstance(one, int | float) and one == one]
+    if len(found) < 3 or not found[2]:
+        return None
+    return max(0, math.floor((found[1] - found[0]) / found[2]) + 1)
 
 
 def _nothing() -> None:
@@ -100,7 +109,10 @@ class Passes(Generic[Block]):
             is to be asked again.
         distances: how far its condition was from ending it half way to `FORESEEN` passes, half way
             from there, and then.
-        moved: how many moves had been read half way.
+        moved, row: how many moves had been read half way, and statements in a row without one.
+        runs_out: whether it is foreseen that it counts to its end.
+        left: passes that it has left, as was foreseen, where these are too many to be read; None
+            if that was not foreseen.
         polled: whether what its motion depends on has been left to others.
     """
 
@@ -124,6 +136,9 @@ class Passes(Generic[Block]):
     polled: bool = False
     distances: list[float | None] = field(default_factory=list)
     moved: int = 0
+    row: int = 0
+    runs_out: bool = False
+    left: float | None = None
 
     def __post_init__(self) -> None:
         self.mark = self.start.asked

@@ -189,6 +189,14 @@ class _Interpreter:
         """None: what registers hold that others write is not known anyhow."""
         return []
 
+    def open_move(self, error: SourceError, span: Span) -> bool:
+        """See `core.source.execution.flow.Host`."""
+        if not self._out.leaves_open(error, span):
+            return False
+        self.meter.move(span)
+        self.place = object()
+        return True
+
     def pause(self, text: str, span: Span) -> None:
         """See `core.source.execution.flow.Host`."""
         self._out.pause(text, span)
@@ -261,10 +269,8 @@ class _Interpreter:
             try:
                 self._drive(statement)
             except SourceError as error:
-                if not self._out.leaves_open(error, statement.span):
+                if not self.open_move(error, statement.span):
                     raise
-                self.meter.move(statement.span)
-                self.place = object()
         elif isinstance(statement, Assign):
             self._assign(statement)
         elif isinstance(statement, AssignAll):

@@ -238,8 +238,20 @@ class Flow:
             up = not _is_number(step) or step > 0  # type: ignore[operator]
             return loops.to_bound("<" if up else ">", counter, stop)
 
+        def ended() -> None:
+            passes = loops.passes_to(start, stop, step)
+            if passes is not None:
+                end = apply("+", start, apply("*", passes, step))
+                self._evaluator.assign(statement.counter, end, scope, statement.span)
+
         loop = loops.Loop(
-            statement.body, span, words, reads=counted, writes=counted, distance=distance
+            statement.body,
+            span,
+            words,
+            reads=counted,
+            writes=counted,
+            distance=distance,
+            ended=ended,
         )
         self._rules.loop(loop, goes_on, run, run_pass)
 

@@ -107,6 +107,14 @@ class KrlHost:
         """A note, unless one of its kind was taken before."""
         self._transcript.notes.once(kind, message, span)
 
+    def open_move(self, error: SourceError, span: Span) -> bool:
+        """Whether the program goes on behind what cannot be carried out, as an open move."""
+        if not self._transcript.leaves_open(error, span):
+            return False
+        self.meter.move(span)
+        self._position.left_out(span)
+        return True
+
     def pause(self, text: str, span: Span) -> None:
         """The robot stands at a loop that waits."""
         self._transcript.pause(text, span)

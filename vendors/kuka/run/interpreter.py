@@ -134,7 +134,7 @@ class Interpreter:
             transcript,
             self._system_changed,
         )
-        host = KrlHost(
+        self._host = host = KrlHost(
             course, meter, data, evaluator.names, scopes, position, own_position, transcript
         )
         rules = Rules(analysis, host)
@@ -289,10 +289,8 @@ class Interpreter:
         try:
             self._motions.read(statement, scope)
         except SourceError as error:
-            if not self._transcript.leaves_open(error, statement.span):
+            if not self._host.open_move(error, statement.span):
                 raise
-            self._meter.move(statement.span)
-            self._position.left_out(statement.span)
 
     def _unread(self, statement: Unread, scope: Scope) -> None:
         # Nobody knows what it does to what it names.
@@ -312,9 +310,8 @@ class Interpreter:
         self._system_changed()
         if not known_no_more.moves:
             self._transcript.keep(statement.span, "", "")
-        elif self._transcript.leaves_open(statement.error, statement.span):
-            self._meter.move(statement.span)
-            self._position.left_out(statement.span)
+        else:
+            self._host.open_move(statement.error, statement.span)
 
     def _assign(self, statement: Assign, scope: Scope) -> None:
         target = statement.target

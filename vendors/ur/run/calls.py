@@ -81,6 +81,9 @@ class CallsRun(JogsRun, SettingsRun, Protocol):
     def run_block(self, block: Block, scope: Scope) -> None:
         """Execute statements in order."""
 
+    def stopped_somewhere(self, error: SourceError, span: Span) -> None:
+        """See `ThreadsRun`."""
+
 
 def call(run: CallsRun, node: Call, scope: Scope) -> Located:
     """The value of a call, and what it does.
@@ -175,10 +178,7 @@ def _move(run: CallsRun, node: Call, scope: Scope) -> Located:
         return move(run, node, scope)
     except SourceError as error:
         span = run.texts.span_of(node)
-        if not run.out.leaves_open(error, span):
-            raise
-        run.meter.move(span)
-        run.position.left_out(span)
+        run.stopped_somewhere(error, span)
         run.literals.reader = ELSEWHERE
         return NOTHING
 

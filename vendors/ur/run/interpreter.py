@@ -199,12 +199,18 @@ class Interpreter:
         unused = isinstance(statement, Evaluate) and statement.expression is call
         return answer(self, call, name, listed=not unused)
 
-    def stopped_somewhere(self, error: SourceError, span: Span) -> None:
-        """The robot is where nobody knows; see `ThreadsRun`."""
+    def open_move(self, error: SourceError, span: Span) -> bool:
+        """Whether the program goes on behind what cannot be carried out, as an open move."""
         if not self.out.leaves_open(error, span):
-            raise error
+            return False
         self.meter.move(span)
         self.position.left_out(span)
+        return True
+
+    def stopped_somewhere(self, error: SourceError, span: Span) -> None:
+        """The robot is where nobody knows; see `ThreadsRun`."""
+        if not self.open_move(error, span):
+            raise error
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""

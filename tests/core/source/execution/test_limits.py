@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from flyby.core.door import Shell, command_line
 from flyby.core.errors import SourceError, Span
-from flyby.core.source.execution.limits import ExecutionLimits, Meter
+from flyby.core.source.execution.limits import EndlessError, ExecutionLimits, Meter
 
 SPAN = Span("a.mod", 7, 3, 60, 65)
 STEPS = st.lists(st.sampled_from(["statement", "move"]), max_size=60)
@@ -48,23 +48,25 @@ def test_calls_that_come_back_do_not_count(enters: list[bool], calls: int) -> No
         meter.call("weld", SPAN)
 
 
-@given(st.lists(st.integers(1, 3), max_size=40), st.integers(1, 5))
-def test_one_move_is_not_repeated_for_ever(lines: list[int], repeats: int) -> None:
-    meter = Meter(ExecutionLimits(repeats=repeats))
-    for position, line in enumerate(lines):
-        span = Span("a.mod", line, 3, 60, 65)
-        if lines[: position + 1].count(line) > repeats:
-            with pytest.raises(SourceError, match=f"executed {repeats} times.*has not ended"):
-                meter.move(span)
-            return
-        meter.move(span)
+@given(st.integers(1, 9), st.integers(1, 9), st.booleans())
+def test_only_a_loop_that_nears_no_end_is_stopped(limit: int, count: int, nears: bool) -> None:
+    meter = Meter(ExecutionLimits(passes=limit))
+    if count == limit and not nears:
+        with pytest.raises(EndlessError, match=f"has run {count} times") as caught:
+            meter.passed(count, lambda: nears, "LOOP", SPAN)
+        assert caught.value.loop == SPAN
+    else:
+        meter.passed(count, lambda: nears, "LOOP", SPAN)
 
 
 def test_the_remedy_is_one_where_the_program_is_read() -> None:
+    def stop() -> None:
+        Meter(ExecutionLimits(passes=0)).passed(0, lambda: False, "LOOP", SPAN)
+
     with pytest.raises(SourceError, match=r"\(entry=NAME\), or .*ReadOptions\(limits=…\)$"):
-        Meter(ExecutionLimits(repeats=0)).move(SPAN)
+        stop()
     with (
         command_line(Shell({}, {})),
         pytest.raises(SourceError, match=r"without it \(--entry NAME\)$"),
     ):
-        Meter(ExecutionLimits(repeats=0)).move(SPAN)
+        stop()
