@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import SourceError
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.move import MoveJ, MoveL
 from flyby.core.program.program import Program
+from flyby.core.program.zone import FINE
 from flyby.core.registry import find_robot, find_vendor
 
 HOME = "movej([0, -1.57, 1.57, -1.57, -1.57, 0])\n"
@@ -40,6 +44,45 @@ def test_a_line_turns_and_moves_in_the_base() -> None:
     assert step == pytest.approx([0.1, 0, 0])
     assert other.target.pose.quaternion == pytest.approx(jog.target.pose.quaternion)
     assert "speedl with a known speed and time is driven from rest to rest" in said(program)
+
+
+@settings(max_examples=10, deadline=None)
+@given(
+    st.lists(
+        st.tuples(st.floats(0.05, 0.1), st.floats(0.0, 0.05), st.floats(0.7, 1.0)),
+        min_size=2,
+        max_size=3,
+    )
+)
+def test_a_line_goes_over_to_the_next_speed_without_a_stop(jogs) -> None:
+    """After the times of all calls it slows down from the last speed; where it is follows from
+    the speeds, which change with the acceleration."""
+    calls = [f"speedl([{x!r}, {y!r}, 0, 0, 0, 0], 0.5, {t!r})\n" for x, y, t in jogs]
+    program = read("sleep(1)\n" + "".join(calls))
+    if len({jog[:2] for jog in jogs}) != len(jogs):
+        return  # calls that go on are one move
+    first, *moves = program.moves
+    assert [move.zone == FINE for move in moves] == [False] * (len(jogs) - 1) + [True]
+    speeds = [np.zeros(2), *(np.array(jog[:2]) for jog in jogs), np.zeros(2)]
+    times = [*(jog[2] for jog in jogs), float(np.linalg.norm(speeds[-2])) / 0.5]
+    ramps = [float(np.linalg.norm(w - v)) / 0.5 for v, w in pairwise(speeds)]
+    away = sum(
+        (v + w) / 2 * ramp + w * (time - ramp)
+        for v, w, ramp, time in zip(speeds, speeds[1:], ramps, times, strict=False)
+    )
+    controller = Controller(find_vendor("ur"), find_robot("ur/ur5e"))
+    start = controller.robot.flange_pose(np.array(first.target.joints)).position
+    assert np.subtract(moves[-1].target.pose.position, start)[:2] == pytest.approx(away, abs=1e-9)
+    stops = sum(t + float(np.hypot(x, y)) / 0.5 for x, y, t in jogs)
+    assert 0.99 * sum(times) <= controller.run(program).duration - 1.0 < stops
+
+
+@pytest.mark.parametrize(
+    "second", ["[-0.1, 0, 0, 0, 0, 0], 0.5, 1", "[0, 0.1, 0, 0, 0, 0], 0.5, 0.1"]
+)
+def test_a_line_that_turns_back_or_has_no_time_stops(second) -> None:
+    _, jog, _ = read(f"speedl([0.1, 0, 0, 0, 0, 0], 0.5, 1)\nspeedl({second})").moves
+    assert jog.zone == FINE
 
 
 def test_a_speed_that_is_not_reached_counts_as_far_as_it_is() -> None:
