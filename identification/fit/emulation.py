@@ -26,7 +26,7 @@ from ...core.motion.model.motion_model import MotionModel, first_change
 from ...core.motion.path.path import Path
 from ..matching import Match, match
 from ..prediction import PERIOD, start_of
-from .parameters import SteppedModels
+from .parameters import SteppedModel, SteppedModels
 from .runs import PreparedRun
 
 STEP = 1e-3
@@ -143,7 +143,7 @@ class RunEmulator:
         stages = self._emulated(model, nuisance)
         off = self._off(stages, model, nuisance)
         base = _Base(model, stages, nuisance, off, self._moments(stages, nuisance))
-        columns = [self._by_parameter(moved, step, base) for moved, step in models.moved]
+        columns = [self._by_parameter(step, base) for step in models.steps]
         shape = (*off.shape, 0)
         by_parameter = np.stack(columns, -1) if columns else np.zeros(shape)
         by_time = self._by_time(stages, model, nuisance)
@@ -160,14 +160,14 @@ class RunEmulator:
     def _weighted(self, off: FloatArray) -> FloatArray:
         return np.asarray(np.einsum("kmn,kn->km", self.prepared.weight, off))
 
-    def _by_parameter(self, model: MotionModel, step: float, base: _Base) -> FloatArray:
+    def _by_parameter(self, step: SteppedModel, base: _Base) -> FloatArray:
         """(K, N), by a step to another model."""
-        made = self._stages(model, base.nuisance, base.stages)
+        made = self._stages(step.model, base.nuisance, base.stages, step.stage)
         if made is base.stages and base.moments is not None:
-            off = self.prepared.q - self._led(model, base, base.moments)
+            off = self.prepared.q - self._led(step.model, base, base.moments)
         else:
-            off = self._off(made, model, base.nuisance)
-        return np.asarray((off - base.off) / step)
+            off = self._off(made, step.model, base.nuisance)
+        return np.asarray((off - base.off) / step.length)
 
     def _moments(self, stages: _Stages, nuisance: Nuisance) -> States | None:
         """The smoothed motion at the samples' times; None where only places count."""
@@ -199,7 +199,7 @@ class RunEmulator:
         ends = []
         for size in sizes:
             changed = replace(nuisance, size=size)
-            ends.append(self._off(self._stages(model, changed, None), model, changed))
+            ends.append(self._off(self._stages(model, changed), model, changed))
         return np.asarray((ends[0] - ends[1]) / (sizes[0] - sizes[1]))
 
     def _by_override(self, base: _Base) -> FloatArray:
@@ -213,14 +213,22 @@ class RunEmulator:
 
     def _emulated(self, model: MotionModel, own: Nuisance) -> _Stages:
         """What a command needs, kept for the next."""
-        self._latest = self._stages(model, own, self._latest)
+        known = self._latest
+        changed = None if known is None else first_change(model, known.model)
+        self._latest = self._stages(model, own, known, changed)
         return self._latest
 
-    def _stages(self, model: MotionModel, own: Nuisance, known: _Stages | None) -> _Stages:
-        """What a command needs, taken from what is known as far as the models agree."""
+    def _stages(
+        self,
+        model: MotionModel,
+        own: Nuisance,
+        known: _Stages | None = None,
+        changed: Stage | None = None,
+    ) -> _Stages:
+        """What a command needs, taken from what is known as far as the models agree: from which
+        stage on they do not."""
         if known is not None and known.size != own.size:
             known = None
-        changed = None if known is None else first_change(model, known.model)
         if known is not None and known.override == own.override and _begins(changed, Stage.LEAD):
             return known
         controller = self.prepared.controller(model)

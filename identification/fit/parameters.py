@@ -12,9 +12,10 @@ import numpy as np
 
 from ...core.arrays import FloatArray
 from ...core.errors import InputError
+from ...core.motion.model.figures import Stage
 from ...core.motion.model.motion_model import MotionModel
 from ...core.robot.model import Robot
-from .keys import fit_of, nothing, value_of, with_value
+from .keys import figure_of, fit_of, nothing, value_of, with_value
 
 
 @dataclass(frozen=True)
@@ -166,17 +167,31 @@ def usual_parameters(model: MotionModel, robot: Robot) -> list[str]:
     return ["blend.tcp.beta[0] = 0", *averages, *scales]
 
 
+class SteppedModel(NamedTuple):
+    """A parameter a step aside.
+
+    Args:
+        model: with it there.
+        length: of the step.
+        stage: the first of an emulation that it changes.
+    """
+
+    model: MotionModel
+    length: float
+    stage: Stage
+
+
 @dataclass(frozen=True, eq=False)
 class SteppedModels:
     """Motion models that tell how residuals change with parameters.
 
     Args:
         model: where derivatives are taken.
-        moved: of each parameter the model with it a step aside, and the step.
+        steps: of each parameter.
     """
 
     model: MotionModel
-    moved: tuple[tuple[MotionModel, float], ...]
+    steps: tuple[SteppedModel, ...]
 
 
 @dataclass(frozen=True)
@@ -279,7 +294,8 @@ class ParameterSet:
             moved = model
             for key in one.keys:
                 moved = with_value(moved, key, float(value + step))
-            made.append((moved, step))
+            stage = min(figure_of(key).stage for key in one.keys)
+            made.append(SteppedModel(moved, step, stage))
         return SteppedModels(model, tuple(made))
 
     def starting_at(self, values: FloatArray) -> ParameterSet:

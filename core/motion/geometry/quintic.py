@@ -29,6 +29,20 @@ def basis(z: FloatArray | float) -> FloatArray:
     return np.asarray(np.power.outer(np.asarray(z), _POWERS) @ _TABLE.T)
 
 
+def coefficients(data: FloatArray) -> FloatArray:
+    """(..., 6), the quintics with data (..., 6), by powers of z."""
+    return np.asarray(data @ _TABLE)
+
+
+def at(coefficients: FloatArray, z: FloatArray) -> FloatArray:
+    """(K,), quintics (K, 6) at shares (K,): quicker than `basis` where many shares of one are
+    asked for."""
+    found = coefficients[:, 5]
+    for power in range(4, -1, -1):
+        found = found * z + coefficients[:, power]
+    return found
+
+
 def slopes(z: FloatArray | float) -> FloatArray:
     """(..., 6), derivative of `basis` by z."""
     rates = _POWERS[1:] * np.power.outer(np.asarray(z), _POWERS[:-1])

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ...arrays import FloatArray, IntArray
 from ..geometry.pieces import Pieces
-from ..geometry.quintic import basis
+from ..geometry.quintic import at, coefficients
 from .arc_length import ArcLength
 from .stamping import Stamp
 
@@ -106,7 +106,7 @@ class Rests:
         stops = np.flatnonzero(pieces.stop[1:-1]) + 1
         knot = pieces.first_interval[stops]
         longest, none = np.full(len(knot), most), np.zeros(len(knot))
-        if in_position is None:
+        if in_position is None or not len(knot):
             return cls(knot, longest, most, None, none, None, none > 0.0)
         entries = _entries(pieces, along, stamp, knot, in_position.window)
         approach = stamp.t[knot] - entries.t
@@ -151,15 +151,16 @@ def _shares(
 ) -> FloatArray:
     """(S, N), z at which axes that are beyond the window at the left end (S, 2) of an interval come
     into it; 0 of others."""
-    if not len(ends):
-        return np.zeros_like(rest)
     states, h = along.states, spacing[:, None, None]
     parts = (states.q[ends] - rest[:, None], h * states.dq[ends], h**2 * states.ddq[ends])
     data = np.stack(parts, axis=2).reshape(len(ends), 6, rest.shape[1])
     beyond = np.abs(data[:, 0]) > window
-    lower, upper = np.zeros_like(rest), np.where(beyond, 1.0, 0.0)
+    powers = coefficients(np.moveaxis(data, 1, -1)[beyond])
+    lower, upper = np.zeros(len(powers)), np.ones(len(powers))
     for _ in range(_HALVINGS):
         middle = 0.5 * (lower + upper)
-        away = np.abs(np.einsum("sni,sin->sn", basis(middle), data)) > window
+        away = np.abs(at(powers, middle)) > window
         lower, upper = np.where(away, middle, lower), np.where(away, upper, middle)
-    return np.where(beyond, upper, 0.0)
+    shares = np.zeros_like(rest)
+    shares[beyond] = upper
+    return shares
