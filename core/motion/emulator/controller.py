@@ -21,7 +21,6 @@ from ..command.commanded_motion import commanded_motion, stretches
 from ..command.smoothing import Smoothing, smoothing_at
 from ..command.trajectory import Trajectory, sample_times
 from ..geometry.pieces import Sampling
-from ..geometry.segments import JOINT_SEGMENT
 from ..model.consumption import SQUARED_TORQUE, Consumption
 from ..model.motion_model import MotionModel
 from ..model.torque import WITHOUT_LIMIT
@@ -325,9 +324,14 @@ class Controller:
 
     def smoothing(self, program: Program, path: Path) -> Smoothing:
         """What is done to the commanded joints in time: as the gentlest move's jerk needs it."""
-        gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
-        joint_moves = bool((path.segments.ends.kind == JOINT_SEGMENT).all())
-        return smoothing_at(self.model, gentlest, joint_moves)
+        return self._smoothing_at(self._gentlest(program, path), path)
+
+    def _gentlest(self, program: Program, path: Path) -> float:
+        """The least share of the jerk limit that a move is programmed with."""
+        return min(move.speed.jerk_fraction for move in self._moves(program, path))
+
+    def _smoothing_at(self, jerk_fraction: float, path: Path) -> Smoothing:
+        return smoothing_at(self.model, jerk_fraction, path.segments.joint_moves_alone)
 
     def smoothing_window(self, program: Program, path: Path) -> float:
         """Length in s of what one smoothed sample depends on."""
@@ -335,10 +339,9 @@ class Controller:
 
     def settling(self, program: Program, path: Path) -> Settling:
         """How long a stamped path rests for what follows it in time."""
-        window = self.smoothing_window(program, path)
-        gentlest = min(move.speed.jerk_fraction for move in self._moves(program, path))
+        gentlest = self._gentlest(program, path)
         ramp = self.model.ramp_at(gentlest)
-        window += ramp
+        window = self._smoothing_at(gentlest, path).window + ramp
         wait = self.model.settling
         stop = window if wait is None else min(wait, window)
         start = StartRamp(self.model.start_ramp)

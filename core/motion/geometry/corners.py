@@ -85,4 +85,4 @@ class ZoneGradient:
     @classmethod
     def zeros(cls, count: int) -> ZoneGradient:
         """A gradient to add to."""
-        return cls(*(np.zeros(count) for _ in range(4)))
+        return cls(*np.zeros((4, count)))

@@ -16,6 +16,7 @@ b alone.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -135,7 +136,7 @@ class Segments:
     length: FloatArray
     scale: FloatArray
 
-    @property
+    @cached_property
     def joint_moves_alone(self) -> bool:
         """Whether no segment is one of the TCP."""
         return not self.ends.kind.any()

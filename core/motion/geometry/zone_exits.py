@@ -19,6 +19,12 @@ from ...spatial.rotation import rotation_vector
 Apart = tuple[float, FloatArray, FloatArray, float]
 """How far, in m or rad, its derivatives (N,) by the joints at the waypoint and at the line's other
 end, the share held, and by the share; zero where it is none."""
+_EXACT = 4e-16
+"""Share of a line, or of what the TCP makes on it at most, to which an exit is found."""
+Exit = tuple[float, FloatArray, FloatArray, float]
+"""The share of a line at which a zone ends, −1 where it does not; its derivatives (N,) by joints
+at the waypoint and at the other end; and how fast the line leaves the zone there, by the
+share, without which there are none."""
 
 
 @cache
@@ -29,25 +35,50 @@ def _scratch(size: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
 def first_exit(
     chain: Chain, q_wp: FloatArray, q_other: FloatArray, radius: float, limit: float
-) -> float:
+) -> Exit:
     """The smallest share of a joint line at which the TCP is ``radius`` from where it began.
 
     A bound on the TCP's speed makes each step of the search safe down to steps of 1e-4 of the
-    line; bisection then finds the exit to rounding.
+    line; then the exit is found to rounding between two of them.
 
     Args:
         chain: the kinematics.
         q_wp, q_other: (N,), the waypoint and the line's other end.
         radius: m.
         limit: share at which the search ends.
-
-    Returns:
-        The share, or -1 if the TCP stays inside up to ``limit``.
     """
-    return float(_first_exit(chain, q_wp, q_other, radius, limit, *_scratch(q_wp.size)[:3]))
+    slopes = np.zeros((2, q_wp.size))
+    scratch = _scratch(q_wp.size)
+    share, speed = _exit(chain, q_wp, q_other, radius, limit, *scratch, slopes)
+    return share, slopes[0], slopes[1], speed
 
 
 @lean
+def _exit(
+    chain: Chain,
+    q_wp: FloatArray,
+    q_other: FloatArray,
+    radius: float,
+    limit: float,
+    R: FloatArray,
+    places: FloatArray,
+    q: FloatArray,
+    columns: FloatArray,
+    slopes: FloatArray,
+) -> tuple[float, float]:
+    """Share and speed; writes the share's derivatives by the implicit function."""
+    share = _first_exit(chain, q_wp, q_other, radius, limit, R, places, q)
+    if share < 0.0:
+        return share, 0.0
+    _, speed = _tcp_apart(chain, q_wp, q_other, share, R, places, q, columns, slopes)
+    if speed > 0.0:
+        for j in range(q.size):
+            slopes[0, j] /= -speed
+            slopes[1, j] /= -speed
+    return share, speed
+
+
+@inner
 def _first_exit(
     chain: Chain,
     q_wp: FloatArray,
@@ -79,25 +110,32 @@ def _first_exit(
         arm += math.sqrt(square)
     if fastest == 0.0:
         return -1.0
-    low, share, gap = 0.0, 0.0, radius
+    low, share, gap_low, gap = 0.0, 0.0, radius, radius
     while gap > 0.0:
         if share >= limit:
             return -1.0
-        low = share
+        low, gap_low = share, gap
         share = min(limit, share + max(gap / fastest, 1e-4))
         gap = radius - _distance(chain, q_wp, q_other, share, q, R, p, p0)
         if share >= limit and gap > 0.0:
             return -1.0
-    high = share
+    # Regula falsi; of the end that stays a second time half the gap counts (Illinois).
+    high, gap_high, stays = share, gap, 0
     for _ in range(100):
-        middle = 0.5 * (low + high)
+        middle = low + (high - low) * gap_low / (gap_low - gap_high)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
         gap = radius - _distance(chain, q_wp, q_other, middle, q, R, p, p0)
+        if abs(gap) < _EXACT * fastest or high - low < _EXACT:
+            return middle
         if gap > 0.0:
-            low = middle
+            low, gap_low = middle, gap
+            gap_high *= 0.5 if stays == 1 else 1.0
+            stays = 1
         else:
-            high = middle
-        if high - low < 1e-15:
-            break
+            high, gap_high = middle, gap
+            gap_low *= 0.5 if stays == -1 else 1.0
+            stays = -1
     return 0.5 * (low + high)
 
 
@@ -121,20 +159,44 @@ def _distance(
     return math.sqrt(square)
 
 
-def tcp_apart(chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float) -> Apart:
-    """How far the TCP is from the waypoint at a share of a joint line, and how that changes.
+def ways(chain: Chain, q: FloatArray, share: float) -> tuple[FloatArray, FloatArray]:
+    """How far the TCP gets along joint lines, from either end of each.
 
     Args:
         chain: the kinematics.
-        q_wp, q_other: (N,), the waypoint and the line's other end.
+        q: (M, 2, N), the lines' ends.
         share: of the line.
+
+    Returns:
+        Distances (M, 2) in m from the ends, and their derivatives (M, 2, 2, N) by the joints at
+        that end and at the other.
     """
-    slopes = np.zeros((2, q_wp.size))
-    distance, speed = _tcp_apart(chain, q_wp, q_other, share, *_scratch(q_wp.size), slopes)
-    return distance, slopes[0], slopes[1], speed
+    distance, slopes = np.empty(q.shape[:2]), np.zeros((len(q), 2, *q.shape[1:]))
+    _ways(chain, q, share, *_scratch(q.shape[2]), distance, slopes)
+    return distance, slopes
 
 
 @lean
+def _ways(
+    chain: Chain,
+    ends: FloatArray,
+    share: float,
+    R: FloatArray,
+    places: FloatArray,
+    q: FloatArray,
+    columns: FloatArray,
+    distance: FloatArray,
+    slopes: FloatArray,
+) -> None:
+    for k in range(ends.shape[0]):
+        for near in range(2):
+            line = ends[k, near], ends[k, 1 - near]
+            distance[k, near], _ = _tcp_apart(
+                chain, *line, share, R, places, q, columns, slopes[k, near]
+            )
+
+
+@inner
 def _tcp_apart(
     chain: Chain,
     q_wp: FloatArray,
@@ -170,7 +232,7 @@ def _tcp_apart(
 
 def first_turn(
     chain: Chain, q_wp: FloatArray, q_other: FloatArray, angle: float, limit: float
-) -> float:
+) -> Exit:
     """`first_exit` by the tool: the share at which it has turned by ``angle`` rad.
 
     No joint turns it faster than by itself, which makes each step of the search safe down to steps
@@ -185,7 +247,7 @@ def first_turn(
         if gap <= 0.0:
             break
         if share >= limit or fastest == 0.0:
-            return -1.0
+            return -1.0, np.zeros(q_wp.size), np.zeros(q_wp.size), 0.0
         low, share = share, min(limit, share + max(gap / fastest, 1e-4))
     while share - low > 1e-15 * share:
         middle = 0.5 * (low + share)
@@ -195,11 +257,16 @@ def first_turn(
             low = middle
         else:
             share = middle
-    return 0.5 * (low + share)
+    share = 0.5 * (low + share)
+    _, by_near, by_far, speed = tool_apart(chain, q_wp, q_other, share)
+    if speed > 0.0:
+        by_near, by_far = by_near / -speed, by_far / -speed
+    return share, by_near, by_far, speed
 
 
 def tool_apart(chain: Chain, q_wp: FloatArray, q_other: FloatArray, share: float) -> Apart:
-    """`tcp_apart` of the tool's orientation: the angle in rad between there and the waypoint."""
+    """By how much the tool is turned at a share of a joint line from how it is at the waypoint, and
+    how that changes: see `Apart`."""
     q = (1 - share) * q_wp + share * q_other
     R, p, J = np.empty((2, 3, 3)), np.empty(3), np.empty((2, 6, q.size))
     jacobian(chain, q_wp, R[0], p, J[0])

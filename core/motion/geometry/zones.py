@@ -20,20 +20,19 @@ from ...robot.kinematics.chain import Chain
 from ..model.motion_model import MotionModel
 from ..model.rules import OrientationZone, Overlap, Pace, Space
 from .corners import JOINT_CORNER, POSITION, TCP_CORNER, Corners, Room, TimedBlend
-from .neighbour_zones import STILL, way_towards_neighbour
+from .neighbour_zones import STILL, NeighbourWays
 from .overlaps import Reaches, left_out, shrunk, taken
 from .reach import Part, Reach, least
 from .segments import ARC_SEGMENT, JOINT_SEGMENT, Segments, in_time
 from .smaller_blends import acceleration_along, share_kept
 from .timed_blends import timed_blend
-from .zone_exits import Apart, first_exit, first_turn, tcp_apart, tool_apart
+from .zone_exits import Exit, first_exit, first_turn
 
 _NOTHING = 1e-9
 """A reach below is no zone."""
 _UNSEEN = 1e-7
 """m, or share of a line, below which a zone by speed is a stop: that of a crawling robot."""
-_DISTANCE, _TURN = (first_exit, tcp_apart), (first_turn, tool_apart)
-"""What tells how far the TCP, or by how much the tool, is from a waypoint along a joint line."""
+_ENDS = "q0", "q1"
 
 
 class ZonePlanner:
@@ -66,6 +65,7 @@ class ZonePlanner:
         self._notes: list[Note] = []
         self._kept: dict[int, Reach] = {}
         self._wanted: tuple[Sequence[Zone], list[Reaches]] = (), []
+        self._halfway = NeighbourWays(self._segments, chains, model.neighbour_fraction)
         self._known_halves: dict[tuple[int, int], Reach | None] = {}
 
     def corners(self, zones: Sequence[Zone]) -> Corners:
@@ -158,11 +158,8 @@ class ZonePlanner:
         Returns:
             None where the TCP stands still on both sides, so that a radius says nothing.
         """
-        share = min(most, self._furthest)
-        ways = [
-            way_towards_neighbour(self._segments, self._chains, segment, i, share)
-            for segment in (i, i + 1)
-        ]
+        neighbours = NeighbourWays(self._segments, self._chains, min(most, self._furthest))
+        ways = [neighbours.way(segment, i) for segment in (i, i + 1)]
         return min((way.value for way in ways if way is not None), default=None)
 
     def _halves(self, i: int, zone: Zone) -> list[Room]:
@@ -249,7 +246,7 @@ class ZonePlanner:
         turn = float(self._segments.turn[segment])
         if self._segments.ends.kind[segment] == JOINT_SEGMENT:
             return self._joint_exit(
-                segment, corner, Reach(angle, (("angle", corner, 1.0),)), limit, _TURN
+                segment, corner, Reach(angle, (("angle", corner, 1.0),)), limit, first_turn
             )
         if turn <= angle * 1e-12 or turn == 0.0:
             return limit
@@ -368,9 +365,7 @@ class ZonePlanner:
     def _half(self, segment: int, corner: int) -> Reach | None:
         key = segment, corner
         if key not in self._known_halves:
-            self._known_halves[key] = way_towards_neighbour(
-                self._segments, self._chains, segment, corner, self._model.neighbour_fraction
-            )
+            self._known_halves[key] = self._halfway.way(segment, corner)
         return self._known_halves[key]
 
     def _exit(self, segment: int, corner: int, size: Reach, angle: float) -> Reach:
@@ -403,29 +398,28 @@ class ZonePlanner:
         corner: int,
         size: Reach,
         limit: Reach,
-        measure: tuple[Callable[..., float], Callable[..., Apart]] = _DISTANCE,
+        exits: Callable[..., Exit] = first_exit,
     ) -> Reach:
-        """First exit from a zone on a joint line; derivatives by the implicit function.
+        """First exit from a zone on a joint line.
 
         Args:
             segment, corner: the line, and the corner of the zone.
             size: of the zone.
             limit: share of the line that it reaches at most.
-            measure: what size is of.
+            exits: finds it, by the TCP's distance or the tool's turn, of which the size is.
         """
-        exits, apart = measure
-        chain = self._chains[segment]
         near, far = (1, 0) if segment == corner else (0, 1)
-        q_wp, q_other = self._segments.ends.q[segment, near], self._segments.ends.q[segment, far]
-        share = exits(chain, q_wp, q_other, size.value, limit.value)
+        q = self._segments.ends.q[segment]
+        share, by_near, by_far, speed = exits(
+            self._chains[segment], q[near], q[far], size.value, limit.value
+        )
         if share < 0.0:
             return limit
-        _, by_near, by_far, speed = apart(chain, q_wp, q_other, share)
         if speed <= 0.0:
             return Reach(share)
         parts: list[Part] = [(n, k, g / speed) for n, k, g in size.parts]
-        parts.append((f"q{near}", segment, by_near / -speed))
-        parts.append((f"q{far}", segment, by_far / -speed))
+        parts.append((_ENDS[near], segment, by_near))
+        parts.append((_ENDS[far], segment, by_far))
         return Reach(share, tuple(parts))
 
     def _lessened(self, i: int, pairs: Reaches) -> Reaches:

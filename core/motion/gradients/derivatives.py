@@ -171,21 +171,19 @@ class Derivatives:
         zone = ZoneGradient.zeros(count)
         for name in ZoneGradient.__dataclass_fields__:
             getattr(zone, name)[owners] = getattr(route_bar.zones, name)
-        speeds.tcp += route_bar.ends.speed
-        speeds.tcp_acceleration += route_bar.ends.acceleration
-        for name in (
-            "joint",
-            "joint_acceleration",
-            "joint_fraction",
-            "joint_acceleration_fraction",
-        ):
-            along = name if name != "joint" else "joint_speed"
-            getattr(speeds, name)[:] += getattr(route_bar.ends, along)
-        by_move = SpeedGradient.zeros(count)
-        for name in SpeedGradient.__dataclass_fields__:
-            getattr(by_move, name)[moves] = getattr(speeds, name)
-        via = np.zeros((count, 3))
-        via[moves] = route_bar.ends.via
+        ends = route_bar.ends
+        speeds.tcp += ends.speed
+        speeds.tcp_acceleration += ends.acceleration
+        speeds.joint += ends.joint_speed
+        speeds.joint_acceleration += ends.joint_acceleration
+        speeds.joint_fraction += ends.joint_fraction
+        speeds.joint_acceleration_fraction += ends.joint_acceleration_fraction
+        by_move, via = speeds, ends.via
+        if len(moves) < count:
+            by_move, via = SpeedGradient.zeros(count), np.zeros((count, 3))
+            for name in SpeedGradient.__dataclass_fields__:
+                getattr(by_move, name)[moves] = getattr(speeds, name)
+            via[moves] = ends.via
         position, turn, joints = np.zeros((count, 3)), np.zeros((count, 3)), np.zeros((count, size))
         start = self._pull_targets(route_bar, position, turn, joints)
         return ProgramGradient(
@@ -209,6 +207,13 @@ class Derivatives:
     ) -> FloatArray:
         """From the segments' ends, last waypoint first, to the targets; returns the start's."""
         route = self._path.route
+        if self._path.segments.joint_moves_alone and self._name_all_joints():
+            # Where TCPs are counts for nothing then.
+            own = bar.ends.q.copy()
+            own[..., route.prescribed] += bar.ends.prescribed
+            own[:-1, 1] += own[1:, 0]
+            joints[list(route.moves)] = own[:, 1]
+            return np.asarray(own[0, 0])
         twist = np.concatenate([bar.ends.position, bar.ends.turn], axis=-1)
         J = end_jacobians(route.ends.q, route.chains)
         posed = any(isinstance(self._program.moves[i].target, PoseTarget) for i in route.moves)
@@ -236,6 +241,12 @@ class Derivatives:
         q_bar = bar.ends.q[0, 0] + inherited + J[0, 0].T @ twist[0, 0]
         q_bar[route.prescribed] += bar.ends.prescribed[0, 0]
         return np.asarray(q_bar)
+
+    def _name_all_joints(self) -> bool:
+        """Whether every target names the values of all axes."""
+        targets = [self._program.moves[i].target for i in self._path.route.moves]
+        external = self._robot.size - self._robot.arm_size
+        return all(isinstance(t, JointTarget) and len(t.external) == external for t in targets)
 
     def _leave(
         self,

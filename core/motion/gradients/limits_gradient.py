@@ -16,6 +16,7 @@ from ..path.tcp_samples import States
 from ..timing.between_samples import pull_between
 from ..timing.limits import CENTRIPETAL, PathLimits, SegmentLimits, rooms, torque_left
 from ..timing.rates import pull_rates, pull_sideways, rates, sideways
+from ..timing.stamping_kernels import StampRows
 from ..timing.superposed_legs import pull_ceilings
 from ..timing.timed_zones import TimedGradient
 from ..timing.torque_rows import Shares
@@ -97,10 +98,9 @@ def _pull_fill(
     acceleration: FloatArray,
     centripetal: float,
     room: FloatArray,
+    place: IntArray,
     binding: IntArray,
-    a_bar: FloatArray,
-    b_bar: FloatArray,
-    bound_bar: FloatArray,
+    rows_bar: StampRows,
     ceiling_bar: FloatArray,
     states_bar: States,
     velocity_bar: FloatArray,
@@ -135,11 +135,13 @@ def _pull_fill(
                 if interval < first_interval[p] or interval >= first_interval[p + 1]:
                     continue
                 for j in range(axes + 2):
-                    if acceleration[s, j] < np.inf:
-                        rate_bar[j] += a_bar[interval, end, j]
-                        bend_bar[j] += b_bar[interval, end, j]
-                        times = room[p, 1 if j >= axes else 0]
-                        acceleration_bar[s, j] += times * bound_bar[interval, end, j]
+                    row = place[j]
+                    if row >= 0 and acceleration[s, j] < np.inf:
+                        rate_bar[j] += rows_bar.a[interval, end, row]
+                        bend_bar[j] += rows_bar.b[interval, end, row]
+                        most_bar = rows_bar.upper[interval, end, row]
+                        most_bar -= rows_bar.lower[interval, end, row]
+                        acceleration_bar[s, j] += room[p, 1 if j >= axes else 0] * most_bar
             pull_rates(states, k, axes, rate_bar, bend_bar, states_bar)
 
 
@@ -161,13 +163,7 @@ def pull_path_limits(
     velocity_bar = np.zeros_like(limits.velocity)
     acceleration_bar = np.zeros_like(limits.acceleration)
     torque_bar = np.zeros_like(limits.torque)
-    shape = (len(made.rows.spacing), 2, limits.acceleration.shape[1])
-    a_bar, b_bar, bound_bar = (np.zeros(shape) for _ in range(3))
-    planned_bar = np.zeros_like(made.zones.planned)
-    plain, indices = len(made.limited), pieces.indices
-    a_bar[:, :, made.limited] = bar.a[:, :, :plain]
-    b_bar[:, :, made.limited] = bar.b[:, :, :plain]
-    bound_bar[:, :, made.limited] = (bar.upper - bar.lower)[:, :, :plain]
+    planned_bar, indices = np.zeros_like(made.zones.planned), pieces.indices
     made.stretches.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
     made.approach.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
     pull_between(
@@ -204,15 +200,14 @@ def pull_path_limits(
         limits.acceleration,
         limits.centripetal,
         rooms(made.zones, made.timed, pieces),
+        limits.limited[1],
         made.binding,
-        a_bar,
-        b_bar,
-        bound_bar,
+        StampRows(bar.a, bar.b, bar.lower, bar.upper),
         bar.ceiling,
         states_bar,
         velocity_bar,
         acceleration_bar,
-        np.empty((4, shape[2])),
+        np.empty((4, acceleration_bar.shape[1])),
     )
     shares_bar = None
     if made.shares is not None:

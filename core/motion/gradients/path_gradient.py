@@ -127,7 +127,8 @@ def pull_path(
         timed_bar.blends,
     )
     pull_joint_legs(layout, edges_bar, reach_bar, segments_bar, gradient.ends)
-    _pull_edges(path, edges_bar, tcp_bar, layout_bar)
+    if not layout.segments.joint_moves_alone:
+        _pull_edges(path, edges_bar, tcp_bar, layout_bar)
     pull_tcp_curves(
         path.tcp,
         tcp_bar,

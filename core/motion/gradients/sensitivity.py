@@ -15,11 +15,12 @@ places are found between the path's samples, and change as `path_tangents` says.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import FloatArray, IntArray
-from ...robot.kinematics.lean import lean
+from ...robot.kinematics.lean import inner, lean
 from ..geometry.corners import POSITION, STOP
 from ..geometry.joint_curves import quintics
 from ..geometry.reach import Reach
@@ -81,56 +82,105 @@ def configurations(path: Path, places: PathPlaces) -> FloatArray:
     """(L, N), the configurations at the places."""
     if not path.segments.joint_moves_alone:
         return _between_samples(path, sigma_of(path, places))
-    if path.model.joint.kind != "quintic":
-        q = np.empty((len(places.part), path.q.shape[1]))
-        corners, law = path.corners, path.model.joint.coefficients
-        given = path.segments.ends.q, corners.kind, corners.reach, law
-        _configurations(*given, places.part, places.share, q)
-        return q
-    base, entering, leaving = _weights(path, places)
-    waypoints = _waypoints(path)
-    before, after = _neighbours(path, places)
-    reach = _reach(path, places)
-    steps = np.diff(waypoints, axis=0)
-    q = waypoints[base]
-    q = q + (reach[:, 0] * entering)[:, None] * steps[before]
-    return np.asarray(q + (reach[:, 1] * leaving)[:, None] * steps[after])
+    q = np.empty((len(places.part), path.q.shape[1]))
+    given = path.segments.ends.q, _zones_of(path)
+    _configurations(*given, places.part, places.share, q)
+    return q
+
+
+class _Zones(NamedTuple):
+    """What zones make of the way past their waypoints.
+
+    Args:
+        kind: (M − 1,), of the corners.
+        reach: (M − 1, 3, 2), of them.
+        laws: (M − 1, 2, C), f and g of `blend` by rising powers of the share.
+    """
+
+    kind: IntArray
+    reach: FloatArray
+    laws: FloatArray
+
+
+def _zones_of(path: Path) -> _Zones:
+    corners, blend = path.corners, path.model.joint
+    timed = blend.kind == "quintic"
+    basis = HERMITE if timed else blend.coefficients
+    laws = np.empty((len(corners.kind), 2, basis.shape[1]))
+    laws[:] = basis[1:3]
+    if timed:
+        shape = quintics(corners)
+        for leg in range(2):
+            laws[:, leg] = (shape[:, :, leg] + shape[:, :, 2]) @ basis[1:]
+    return _Zones(corners.kind, corners.reach, laws)
+
+
+@inner
+def _law(laws: FloatArray, s: float) -> tuple[float, float]:
+    """f and g at a share s of a zone."""
+    f = g = 0.0
+    for i in range(laws.shape[1] - 1, -1, -1):
+        f, g = f * s + laws[0, i], g * s + laws[1, i]
+    return f, g
+
+
+@inner
+def _weights(zones: _Zones, part: int, s: float) -> tuple[int, float, float]:
+    """A place as waypoint k + w₀ Δq before it + w₁ Δq after it: k, w₀ and w₁."""
+    kind, reach, laws = zones
+    i, count = part - kind.size - 1, kind.size + 1
+    if i >= 0:
+        if kind[i] == STOP:
+            return i + 1, 0.0, 0.0
+        f, g = _law(laws[i], s)
+        return i + 1, reach[i, POSITION, 0] * (f - 1.0), reach[i, POSITION, 1] * g
+    arriving = leaving = 0.0
+    if part < count - 1 and kind[part] != STOP:
+        arriving = reach[part, POSITION, 0]
+    if part > 0 and kind[part - 1] != STOP:
+        leaving = reach[part - 1, POSITION, 1]
+    return part, 0.0, leaving + (1.0 - arriving - leaving) * s
+
+
+@inner
+def _weights_dot(
+    zones: _Zones, part: int, s: float, reach_dot: FloatArray, laws_dot: FloatArray, d: int
+) -> tuple[float, float]:
+    """How w₀ and w₁ change along a direction; see `_push`."""
+    kind, reach, laws = zones
+    i, count = part - kind.size - 1, kind.size + 1
+    if i >= 0:
+        if kind[i] == STOP:
+            return 0.0, 0.0
+        f, g = _law(laws[i], s)
+        before, after = reach_dot[i, 0, d] * (f - 1.0), reach_dot[i, 1, d] * g
+        if laws_dot.shape[0] > 0:
+            f, g = _law(laws_dot[i, :, :, d], s)
+            before += reach[i, POSITION, 0] * f
+            after += reach[i, POSITION, 1] * g
+        return before, after
+    # The reaches of stops do not change.
+    along = 0.0
+    if part < count - 1:
+        along -= s * reach_dot[part, 0, d]
+    if part > 0:
+        along += (1.0 - s) * reach_dot[part - 1, 1, d]
+    return 0.0, along
 
 
 @lean
 def _configurations(
-    ends: FloatArray,
-    kind: IntArray,
-    reach: FloatArray,
-    law: FloatArray,
-    part: IntArray,
-    share: FloatArray,
-    q: FloatArray,
+    ends: FloatArray, zones: _Zones, part: IntArray, share: FloatArray, q: FloatArray
 ) -> None:
-    """`configurations` where corners are polynomials; see `_weights`."""
-    count = ends.shape[0]
+    """`configurations` on joint moves alone."""
     for k in range(part.size):
-        zone, s = part[k] >= count, share[k]
-        corner = part[k] - count if zone else part[k]
-        arriving = leaving = 0.0
-        if zone:
-            f = g = 0.0
-            for i in range(law.shape[1] - 1, -1, -1):
-                f, g = f * s + law[1, i], g * s + law[2, i]
-            if kind[corner] != STOP:
-                arriving = reach[corner, POSITION, 0] * (f - 1.0)
-                leaving = reach[corner, POSITION, 1] * g
-            for j in range(q.shape[1]):
-                before, at, after = ends[corner, 0, j], ends[corner, 1, j], ends[corner + 1, 1, j]
-                q[k, j] = at + arriving * (at - before) + leaving * (after - at)
-            continue
-        if corner < count - 1 and kind[corner] != STOP:
-            arriving = reach[corner, POSITION, 0]
-        if corner > 0 and kind[corner - 1] != STOP:
-            leaving = reach[corner - 1, POSITION, 1]
-        along = leaving + (1.0 - arriving - leaving) * s
+        at, before, after = _weights(zones, part[k], share[k])
         for j in range(q.shape[1]):
-            q[k, j] = ends[corner, 0, j] + along * (ends[corner, 1, j] - ends[corner, 0, j])
+            q[k, j] = ends[at, 0, j]
+            if before != 0.0:
+                q[k, j] += before * (ends[at, 0, j] - ends[at - 1, 0, j])
+            if after != 0.0:
+                q[k, j] += after * (ends[at, 1, j] - ends[at, 0, j])
 
 
 class Sensitivity:
@@ -165,28 +215,45 @@ def _tangents(
     path: Path, places: PathPlaces, directions: Directions, reaches: ReachTangents
 ) -> FloatArray:
     """(L, N, K) on paths of joint moves alone."""
-    base, entering, leaving = _weights(path, places)
-    entering_dot, leaving_dot = _weight_dots(path, places, directions.count, reaches)
-    steps = np.diff(_waypoints(path), axis=0)
-    steps_dot = np.diff(directions.waypoints, axis=0)
-    before, after = _neighbours(path, places)
-    reach = _reach(path, places)
-    reach_dot = _combined(path, places, reaches.of_corners(path.corners)[:, POSITION], 0.0)
-    out = directions.waypoints[base].copy()
-    for side, weight, weight_dot, segment in (
-        (0, entering, entering_dot, before),
-        (1, leaving, leaving_dot, after),
-    ):
-        moved = reach[:, side, None] * steps[segment]
-        out += moved[:, :, None] * weight_dot[:, None, :]
-        out += (reach[:, side] * weight)[:, None, None] * steps_dot[segment]
-        out += (weight[:, None] * steps[segment])[:, :, None] * reach_dot[:, side][:, None, :]
-    return np.asarray(out)
+    zones, ends, corners = _zones_of(path), path.segments.ends.q, path.corners
+    laws_dot = np.zeros(
+        (len(corners.timed) and len(corners.kind), *zones.laws.shape[1:], directions.count)
+    )
+    for i, blend in corners.timed.items():
+        for leg, (rate, bend) in enumerate(zip(blend.rates, blend.bends, strict=True)):
+            laws_dot[i, leg] += np.outer(HERMITE[1 + leg], reaches.of(rate))
+            laws_dot[i, leg] += np.outer(HERMITE[4 + leg], reaches.of(bend))
+    dots = directions.waypoints, reaches.of_corners(corners)[:, POSITION], laws_dot
+    out = np.empty((len(places.part), *directions.waypoints.shape[1:]))
+    _push(ends, zones, places.part, places.share, dots, out)
+    return out
 
 
-def _waypoints(path: Path) -> FloatArray:
-    q = path.segments.ends.q
-    return np.concatenate([q[:1, 0], q[:, 1]])
+@lean
+def _push(
+    ends: FloatArray,
+    zones: _Zones,
+    part: IntArray,
+    share: FloatArray,
+    dots: tuple[FloatArray, FloatArray, FloatArray],
+    out: FloatArray,
+) -> None:
+    """Forward of `_configurations`; ``dots``: how waypoints (M + 1, N, K), reaches (M − 1, 2, K)
+    and laws (M − 1, 2, C, K; none where they do not) change."""
+    waypoint, reach_dot, laws_dot = dots
+    for k in range(part.size):
+        at, before, after = _weights(zones, part[k], share[k])
+        for d in range(out.shape[2]):
+            given = zones, part[k], share[k], reach_dot, laws_dot, d
+            before_dot, after_dot = _weights_dot(*given)
+            for j in range(out.shape[1]):
+                moved = waypoint[at, j, d]
+                if at > 0 and part[k] > ends.shape[0] - 1:
+                    moved += before * (waypoint[at, j, d] - waypoint[at - 1, j, d])
+                    moved += before_dot * (ends[at, 0, j] - ends[at - 1, 0, j])
+                moved += after * (waypoint[at + 1, j, d] - waypoint[at, j, d])
+                moved += after_dot * (ends[at, 1, j] - ends[at, 0, j])
+                out[k, j, d] = moved
 
 
 def _parts(waypoint: FloatArray, extent: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -197,80 +264,6 @@ def _parts(waypoint: FloatArray, extent: FloatArray) -> tuple[FloatArray, FloatA
     begin = np.concatenate([waypoint[:-1] + after, waypoint[1:-1] - extent[:, 0]])
     end = np.concatenate([waypoint[1:] - before, waypoint[1:-1] + extent[:, 1]])
     return begin, end
-
-
-def _neighbours(path: Path, places: PathPlaces) -> tuple[IntArray, IntArray]:
-    """The segments before and after each place; twice its own for a straight part."""
-    count = len(path.segments.scale)
-    zone = places.part >= count
-    corner = places.part - count
-    return np.where(zone, corner, places.part), np.where(zone, corner + 1, places.part)
-
-
-def _weights(path: Path, places: PathPlaces) -> tuple[IntArray, FloatArray, FloatArray]:
-    """q = waypoint[base] + ρ₀ w₀ Δq_before + ρ₁ w₁ Δq_after, and so for straight parts too.
-
-    There ρ₀ = 1 − ρ_out − ρ_in counts with λ, and ρ₁ = ρ_out with 1; see `_reach`.
-    """
-    count = len(path.segments.scale)
-    zone = places.part >= count
-    timed = path.model.joint.kind == "quintic"
-    basis = HERMITE if timed else path.model.joint.coefficients
-    values = places.share[:, None] ** np.arange(basis.shape[1]) @ basis.T
-    f, g = values[:, 1], values[:, 2]
-    if timed:
-        shape = _quintics(path, places)
-        f, g = (
-            np.sum(values[:, 1:] * (shape[:, :, leg] + shape[:, :, 2]), axis=1) for leg in (0, 1)
-        )
-    base = np.where(zone, places.part - count + 1, places.part)
-    return base, np.where(zone, f - 1.0, places.share), np.where(zone, g, 1.0)
-
-
-def _quintics(path: Path, places: PathPlaces) -> FloatArray:
-    """(L, 5, 3), see `quintics`; of places in zones alone."""
-    corner = places.part - len(path.segments.scale)
-    return quintics(path.corners)[np.where(corner >= 0, corner, 0)]
-
-
-def _weight_dots(
-    path: Path, places: PathPlaces, count: int, reaches: ReachTangents
-) -> tuple[FloatArray, FloatArray]:
-    """(L, K) each, derivatives of f and g in corners that are blended in time; else zero."""
-    dots = np.zeros((2, len(places.part), count))
-    for i, blend in path.corners.timed.items():
-        rows = np.flatnonzero(places.part == len(path.segments.scale) + i)
-        powers = places.share[rows, None] ** np.arange(HERMITE.shape[1])
-        for leg in range(2):
-            for basis, reach in ((1 + leg, blend.rates[leg]), (4 + leg, blend.bends[leg])):
-                dots[leg, rows] += np.outer(powers @ HERMITE[basis], reaches.of(reach))
-    return dots[0], dots[1]
-
-
-def _reach(path: Path, places: PathPlaces) -> FloatArray:
-    """(L, 2), ρ₀ and ρ₁ of `_weights`."""
-    return _combined(path, places, _live(path))
-
-
-def _live(path: Path) -> FloatArray:
-    """(M − 1, 2), how far each zone reaches; 0 at stops."""
-    corners = path.corners
-    return np.where((corners.kind == STOP)[:, None], 0.0, corners.reach[:, POSITION])
-
-
-def _combined(path: Path, places: PathPlaces, reach: FloatArray, whole: float = 1.0) -> FloatArray:
-    """ρ₀ and ρ₁ from the zones' reaches, (M − 1, 2, ...) → (L, 2, ...)."""
-    count = len(path.segments.scale)
-    zone = places.part >= count
-    none = np.zeros((1, *reach.shape[2:]))
-    arriving = np.concatenate([reach[:, 0], none])
-    leaving = np.concatenate([none, reach[:, 1]])
-    straight = whole - arriving - leaving
-    segment = np.where(zone, 0, places.part)
-    out = np.stack([straight[segment], leaving[segment]], 1)
-    corner = (places.part - count)[zone]
-    out[zone] = reach[corner]
-    return out
 
 
 def _between_samples(path: Path, sigma: FloatArray) -> FloatArray:

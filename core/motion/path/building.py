@@ -59,7 +59,8 @@ def build_path(route: Route, model: MotionModel, sampling: Sampling) -> Path:
     layout = Layout.of(segments, corners)
     tcp = make_tcp_curves(layout, model.tcp, model.orientation)
     edges = CornerEdges.of_joint_legs(layout)
-    for run, states, _ in _followed(route, layout, tcp.curves, list(edge_runs(route, layout))):
+    runs = [] if segments.joint_moves_alone else list(edge_runs(route, layout))
+    for run, states, _ in _followed(route, layout, tcp.curves, runs):
         for array, part in ((edges.q, states.q), (edges.dq, states.dq), (edges.ddq, states.ddq)):
             array[run.corner, run.side] = part[-1]
     joint = make_joint_curves(layout, model.joint, edges)

@@ -366,7 +366,7 @@ def _with_other_numbers(before: Program, route: Route, program: Program) -> Rout
         return None
     if len(route.moves) != len(before.moves):
         return None
-    kind, zones, changed = route.ends.kind, list(route.zones), []
+    kind, zones, changed = route.ends.kind.tolist(), list(route.zones), []
     k = -1
     for old, new in zip(before.statements, program.statements, strict=True):
         k += isinstance(old, MoveJ | MoveL | MoveC)
@@ -374,7 +374,7 @@ def _with_other_numbers(before: Program, route: Route, program: Program) -> Rout
             continue
         if not (isinstance(old, MoveJ) and isinstance(new, MoveJ) and _alike(old, new)):
             return None
-        if (kind[k : k + 2] != JOINT_SEGMENT).any():
+        if kind[k] != JOINT_SEGMENT or kind[min(k + 1, len(kind) - 1)] != JOINT_SEGMENT:
             return None
         target, external = new.target, route.robot.size - route.robot.arm_size
         if not isinstance(target, JointTarget) or len(target.external) != external:
@@ -406,14 +406,18 @@ def _moved(route: Route, changed: Sequence[tuple[int, JointTarget]]) -> Ends | N
     ends, count = route.ends, len(route.moves)
     q, prescribed = ends.q.copy(), ends.prescribed.copy()
     position, rotation = ends.position.copy(), ends.rotation.copy()
+    chains = route.chains
     for k, target in changed:
-        q[k, 1] = (*target.joints, *target.external)
-        for segment, end in ((k, 1), (k + 1, 0)):
-            if segment < count:
-                q[segment, end] = q[k, 1]
-                prescribed[segment, end] = q[k, 1, route.prescribed]
-                at = rotation[segment, end], position[segment, end]
-                pose(route.chains[segment], q[segment, end], *at)
+        here, after = (k, 1), (k + 1, 0)
+        q[here] = (*target.joints, *target.external)
+        prescribed[here] = q[k, 1, route.prescribed]
+        pose(chains[k], q[here], rotation[here], position[here])
+        if k + 1 < count:
+            q[after], prescribed[after] = q[here], prescribed[here]
+            if chains[k + 1] is chains[k]:
+                rotation[after], position[after] = rotation[here], position[here]
+            else:
+                pose(chains[k + 1], q[after], rotation[after], position[after])
     moved = [k for k, _ in changed]
     near = [k for k in {*moved, *(k + 1 for k in moved)} if k < count]
     if (np.linalg.norm(q[near, 1] - q[near, 0], axis=1) <= _NOWHERE).any():
