@@ -116,6 +116,19 @@ class SearchEffort:
 
 
 @dataclass(frozen=True, slots=True)
+class SearchStand(Generic[P]):
+    """Where a search stands.
+
+    Args:
+        point: there.
+        gradient: ∇f (n,) there.
+    """
+
+    point: P
+    gradient: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class SearchResult(Generic[P]):
     """Where a search ended.
 
@@ -124,12 +137,14 @@ class SearchResult(Generic[P]):
         violation: largest one there.
         finished: whether no better point is to be expected nearby.
         memory: with which the search can go on.
+        stand: at which it can.
     """
 
     point: P
     violation: float
     finished: bool
     memory: Memory
+    stand: SearchStand[P]
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +226,11 @@ def violation(point: SearchPoint) -> float:
 
 
 def search(
-    model: SearchModel[P], start: P, settings: SearchEffort, memory: Memory | None = None
+    model: SearchModel[P],
+    start: P,
+    settings: SearchEffort,
+    memory: Memory | None = None,
+    gradient: FloatArray | None = None,
 ) -> SearchResult[P]:
     """The best point found from a start.
 
@@ -220,11 +239,11 @@ def search(
         start: where to begin.
         settings: how long.
         memory: of a search that ended there.
+        gradient: ∇f (n,) there, if it is known.
     """
     known = Memory(start.x, settings.box) if memory is None else memory
-    state = _State(
-        start, model.gradient(start), known.box, known.price, list(known.kinks), known.looked
-    )
+    gradient = model.gradient(start) if gradient is None else gradient
+    state = _State(start, gradient, known.box, known.price, list(known.kinks), known.looked)
     best, finished = start, False
     for _ in range(settings.iterations):
         fall = _iterate(model, state, settings)
@@ -238,7 +257,8 @@ def search(
                 break
             _look_around(model, state)
     memory = Memory(state.point.x, state.box, state.price, tuple(state.kinks), state.looked)
-    return SearchResult(best, violation(best), finished, memory)
+    stand = SearchStand(state.point, state.gradient)
+    return SearchResult(best, violation(best), finished, memory, stand)
 
 
 def _look_around(model: SearchModel[P], state: _State[P]) -> None:

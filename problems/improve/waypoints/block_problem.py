@@ -21,6 +21,7 @@ from ....core.motion.gradients.derivatives import Derivatives
 from ....core.motion.gradients.sensitivity import PathPlaces
 from ....core.motion.timing.timing import Timing
 from ....core.program.program import Program
+from ..nonsmooth_sqp import SearchStand
 from .block_emulation import DrivenBlock, Driver
 from .blocks import MoveBlock
 from .options import WaypointTask
@@ -34,6 +35,8 @@ _COSTLY_WITHIN = 0.04
 from further away is corrected by the true value there."""
 _FASTEST = 4.0
 """m by which a robot's body moves at most, about, where the variables change by a length of 1."""
+_MOST_STANDS = 32
+"""Remembered at once."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,9 @@ class BlockProblem:
             need keep no more than they have there.
         density, more: of the places; see `Driver`.
 
+    Attributes:
+        stands: where searches ended that may go on, by the bytes of x.
+
     Raises:
         MotionError: the block cannot be driven as it was given.
     """
@@ -129,6 +135,13 @@ class BlockProblem:
         self._points: tuple[PointRow, ...] = point_rows(block, first.path, task)
         limits = controller.robot.limits
         self._joint_limits = limits.lower, limits.upper
+        self.stands: dict[bytes, SearchStand[EvaluatedBlock]] = {}
+
+    def remember(self, stand: SearchStand[EvaluatedBlock]) -> None:
+        """Keep where a search ended: one that goes on from there need not evaluate it again."""
+        if len(self.stands) == _MOST_STANDS:
+            del self.stands[next(iter(self.stands))]
+        self.stands[stand.point.x.tobytes()] = stand
 
     # -------------------------------------------------------------------------- values
 

@@ -194,19 +194,24 @@ def _searched(
 ) -> Answer:
     """The best values near a start."""
     memory = job.memory
+    stand = None
     try:
         problem = shared.problem(fine, job.block, aim)
-        start = problem.point(memory.x)
+        stand = problem.stands.pop(memory.x.tobytes(), None)
+        start = problem.point(memory.x) if stand is None else stand.point
     except MotionError:
         # As it is it can be driven, but not with these zones, or this sampling.
         start = None
     if start is None:
         return Answer(job.block, memory.x, np.inf, np.inf, True, memory)
     try:
-        found = search(problem, start, settings, memory)
+        known = None if stand is None else stand.gradient
+        found = search(problem, start, settings, memory, known)
     except MotionError:
         # A pose target is singular where the search stands: no derivatives, no way on.
         return Answer(job.block, start.x, start.objective, violation(start), True, memory)
+    if not found.finished:
+        problem.remember(found.stand)
     point = found.point
     fell = start.objective - point.objective if violation(start) <= FEASIBLE else np.inf
     return Answer(

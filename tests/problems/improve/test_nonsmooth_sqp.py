@@ -98,3 +98,28 @@ def test_a_search_goes_on_where_it_ended() -> None:
     assert again is not None
     second = search(problem, again, SearchEffort(iterations=20), first.memory)
     assert second.point.objective < first.point.objective
+
+
+def test_a_search_goes_on_from_where_it_stands_with_what_is_known_there() -> None:
+    random = np.random.default_rng(5)
+    slopes = random.normal(size=(8, 4))
+    problem = Largest(np.concatenate([slopes, -slopes]), np.ones(16), np.ones(4), -10.0)
+    start = problem.point(np.full(4, 0.5))
+    assert start is not None
+    first = search(problem, start, SearchEffort(iterations=5))
+    anew = problem.point(first.memory.x)
+    assert anew is not None
+    effort = SearchEffort(iterations=20)
+    evaluated = search(problem, anew, effort, first.memory)
+    gradients: list[At] = []
+
+    class Counting(Largest):
+        def gradient(self, point: At) -> FloatArray:
+            gradients.append(point)
+            return super().gradient(point)
+
+    counting = Counting(problem.slopes, problem.bends, problem.normal, problem.least)
+    stand = first.stand
+    known = search(counting, stand.point, effort, first.memory, stand.gradient)
+    assert (known.point.x == evaluated.point.x).all()
+    assert gradients and not any((point.x == stand.point.x).all() for point in gradients)
