@@ -1,4 +1,8 @@
-"""Installs `kernel_cache` when numba is imported, and not before: many commands do without it."""
+"""Installs `kernel_cache` when numba is imported, and not before: many commands do without it.
+
+numba looks for a BLAS when it is imported, and by that imports all of SciPy's linear algebra, which
+takes a third as long as numba. It is put off until a kernel is compiled, or called, that needs it.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +10,11 @@ import sys
 from collections.abc import Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
+from importlib.util import find_spec
 from types import ModuleType
 
 _DISPATCHER = "numba.core.dispatcher"
+_ARRAYS, _ALGEBRA = "numba.np.arraymath", "numba.np.linalg"
 
 
 def install() -> None:
@@ -26,18 +32,29 @@ def _install(dispatcher: ModuleType) -> None:
     install(dispatcher)
 
 
+def _have_blas() -> None:
+    """As numba's `ensure_blas`, but that a SciPy which is there is taken to have one."""
+    if find_spec("scipy") is None:
+        raise ImportError("SciPy is required for linear algebra")
+
+
 class _Finder(MetaPathFinder):
-    """Finds the one module, once, as it would be found without this."""
+    """Finds two modules, each once, as they would be found without this."""
+
+    def __init__(self) -> None:
+        self._awaited: dict[str, type[_Loader]] = {_DISPATCHER: _Loader, _ARRAYS: _BlasLoader}
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        if fullname != _DISPATCHER:
+        loader = self._awaited.pop(fullname, None)
+        if loader is None:
             return None
-        sys.meta_path.remove(self)
+        if not self._awaited:
+            sys.meta_path.remove(self)
         spec = PathFinder.find_spec(fullname, path, target)
         if spec is not None and spec.loader is not None:
-            spec.loader = _Loader(spec.loader)
+            spec.loader = loader(spec.loader)
         return spec
 
 
@@ -53,3 +70,20 @@ class _Loader(Loader):
     def exec_module(self, module: ModuleType) -> None:
         self._loader.exec_module(module)
         _install(module)
+
+
+class _BlasLoader(_Loader):
+    """Loads the module that looks for a BLAS, without importing one."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        algebra = sys.modules.get(_ALGEBRA)
+        ensure = getattr(algebra, "ensure_blas", None)
+        if algebra is None or ensure is None:
+            self._loader.exec_module(module)
+            return
+        names = vars(algebra)
+        names["ensure_blas"] = _have_blas
+        try:
+            self._loader.exec_module(module)
+        finally:
+            names["ensure_blas"] = vars(module)["ensure_blas"] = ensure

@@ -36,7 +36,7 @@ sys.modules["flyby.fake"] = fake
 spec.loader.exec_module(fake)
 x = np.array([1.0, 2.0, 3.0])
 print(fake.squares(x).tolist(), dict(fake.squares.stats.cache_hits) != {},
-      "scipy.linalg" in sys.modules)
+      "numba.np.arraymath" in sys.modules)
 print(fake.total(x), fake.total.inspect_llvm(fake.total.signatures[0]) != "")
 """
 
@@ -61,3 +61,19 @@ def test_a_kept_kernel_is_loaded_without_what_compiling_takes(tmp_path: Path) ->
     for kept in (tmp_path / "cache").rglob("*total*.nbi"):
         kept.unlink()  # it has to be compiled, with the kernel that was loaded in it
     assert process()[:2] == ["[1.0, 4.0, 9.0] True False", "14.0 True"]
+
+
+DOT = """
+import sys
+import numpy as np, flyby
+from numba import njit
+
+x = np.array([1.0, 2.0, 3.0])
+print(njit(lambda x: x.sum())(x), "scipy.linalg" in sys.modules)
+print(njit(lambda x: np.dot(x, x))(x), "scipy.linalg" in sys.modules)
+"""
+
+
+def test_linear_algebra_is_imported_for_kernels_that_need_it_alone() -> None:
+    done = subprocess.run([sys.executable, "-c", DOT], capture_output=True, text=True, check=True)
+    assert done.stdout.split("\n")[:2] == ["6.0 False", "14.0 True"]
