@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ..core.display import counted
 from ..core.door import spelt
 from ..core.errors import FaultCause, MotionError, Note
+from ..core.files.toml_text import value_text
 from .fitting import arms_that_fit
 from .options.entries import TIME, Extent, number, switch
 from .options.keywords import by_keywords
@@ -15,6 +16,8 @@ from .results.cell_course import CellCourse
 from .setup import RobotOptions, Setup, start_of, with_setup
 
 if TYPE_CHECKING:
+    from ..core.driving.driven_program import DrivenProgram
+    from ..core.motion.emulator.controller import Controller
     from ..core.program.program import Program
     from .results.runs import Run
 
@@ -50,7 +53,6 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     """
     from ..core.driving.assumed_figures import duration_range
     from ..core.driving.driven_program import refusal
-    from ..core.driving.past_faults import drive
     from ..core.motion.emulator.controller import Controller
     from ..core.motion.emulator.move_figures import load_notes, range_notes
     from .results.runs import Run
@@ -58,11 +60,7 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     program, setup = with_setup(program, options)
     options.say(f"emulating {counted(program.moves, 'move')}")
     controller = Controller(setup.vendor, setup.robot)
-    course = CellCourse.of(program, setup)
-    try:
-        driven = drive(controller, course.program, start_of(program), options.period)
-    except MotionError as error:
-        raise _with_others(error, program, setup) from error
+    program, course, driven = _driven(program, setup, controller, options)
     if options.strict and driven.faults:
         raise refusal(driven.faults)
     noted = tuple(
@@ -81,6 +79,59 @@ def emulate_with(program: Program, options: EmulateOptions) -> Run:
     between = (sum(least for least, _ in known), sum(most for _, most in known)) if known else None
     whole = replace(driven, program=own, parts=noted)
     return Run.of(whole, setup.robot, clearances, between)
+
+
+def _driven(
+    program: Program, setup: Setup, controller: Controller, options: EmulateOptions
+) -> tuple[Program, CellCourse, DrivenProgram]:
+    """A program as it is driven, its course among the cell's parts, and what can be driven."""
+    from ..core.driving.past_faults import drive
+
+    course = CellCourse.of(program, setup)
+    failed: MotionError | None = None
+    try:
+        driven = drive(controller, course.program, start_of(program), options.period)
+        if not driven.faults or options.strict:
+            return program, course, driven
+    except MotionError as error:
+        failed = error
+    if not options.strict and not program.placed:
+        put = _with_places(program, setup, controller)
+        if put.placed:
+            return _driven(put, setup, controller, options)
+    if failed is not None:
+        raise _with_others(failed, program, setup) from failed
+    return program, course, driven
+
+
+def _with_places(program: Program, setup: Setup, controller: Controller) -> Program:
+    """A program whose unknown tools and work objects are put to where the robot drives it, if it
+    does not drive it with the controller's own; and that they are."""
+    from ..core.driving.fitting_frames import frames_that_fit, placed
+    from ..core.language import FrameAnswers
+    from ..core.program.assumed_places import assumed_places
+
+    says = setup.vendor.reader
+    if not isinstance(says, FrameAnswers) or not assumed_places(program):
+        return program
+    found = frames_that_fit(controller, program, start_of(program))
+    notes: list[Note] = []
+    for question in program.questions:
+        pose = found.get(question.key)
+        if pose is None or question.example is None:
+            continue
+        answer = says.frame_answer(question.example, pose)
+        notes.append(
+            Note(
+                f"{question.key} is not known, and the robot does not drive the program with the "
+                f"controller's own: {value_text(answer)} is taken, an example with which it drives "
+                f"more of it; say what it is in a file ({spelt('answers')})",
+                span=question.span,
+            )
+        )
+    if not notes:
+        return program
+    return replace(placed(program, found), notes=(*program.notes, *notes))
 
 
 def _misfit(program: Program, setup: Setup) -> tuple[Note, ...]:

@@ -324,11 +324,14 @@ def controller_of(program: Program, setup: Setup) -> Controller:
     """The controller for a program that is used as a whole.
 
     Raises:
+        InputError: a tool or work object of it is not known.
         MotionError: moves cannot be driven; it names all of them.
     """
     from ..core.driving.past_faults import refuse_faults
     from ..core.motion.emulator.controller import Controller
+    from ..core.program.assumed_places import refuse_assumed
 
+    refuse_assumed(program)
     controller = Controller(setup.vendor, setup.robot)
     refuse_faults(controller, program, start_of(program))
     return controller

@@ -276,8 +276,12 @@ def _sources(program: Program, setup: Setup, options: Mapping[str, str]) -> Sour
     becomes comments: what names data of the old files alone, or all of it if that does not do.
 
     Raises:
+        InputError: a tool or work object of the program is not known.
         FlybyError: the language cannot say what the program holds.
     """
+    from ..core.program.assumed_places import refuse_assumed
+
+    refuse_assumed(program)
     vendor, robot = setup.vendor, setup.robot
     try:
         return vendor.write(program, robot, options)

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 _FIGURES = {"velocity": "speeds", "acceleration": "accelerations"}
 MOST_ALIKE = 3
 """Faults that say the same of several places, before the rest of them is only counted."""
+MOST_NAMED = 3
+"""Tools and work objects that are named in the headline."""
 MOST_LINES = 10
 """Lines that have a row of their own; the rest of them is summed up."""
 
@@ -51,7 +53,7 @@ def print_report(run: Run) -> None:
         faults, parts = counted(report.faults, "fault"), counted(report.parts, "part")
         told = f"{faults}, so no cycle time; {report.driven_time:.3f} s driven in {parts}"
     print_rich(
-        f"{report.program} on {report.robot}: {told}{_range(report)}; "
+        f"{report.program} on {report.robot}{_taken(report)}: {told}{_range(report)}; "
         f"TCP path {1e3 * report.length:.1f} mm, at most {1e3 * report.top_speed:.0f} mm/s"
     )
     for line in clearance_lines(report, program):
@@ -107,6 +109,13 @@ def clearance_lines(report: Report, program: Program) -> list[str]:
 def _named(program: Program, move: int) -> str:
     span = program.moves[move].statement
     return f"move {move + 1}" + ("" if span is None else f", line {span.line}")
+
+
+def _taken(report: Report) -> str:
+    """That tools and work objects are assumed, if they are."""
+    named = ", ".join(report.unknown[:MOST_NAMED])
+    more = len(report.unknown) - MOST_NAMED
+    return f" with {named}{f' and {more} more' if more > 0 else ''} assumed" if named else ""
 
 
 def _range(report: Report) -> str:
@@ -177,6 +186,7 @@ def report_json(report: Report) -> dict[str, Any]:
         "cycle_time_s": report.cycle_time,
         "driven_time_s": report.driven_time,
         "driven_time_range_s": report.time_range,
+        "not_known": report.unknown,
         "first_wait_s": report.first_wait,
         "waiting_s": report.waiting,
         "settling_s": report.settling,

@@ -7,7 +7,7 @@ whoever has to say what it is, and no measurement.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import permutations, product
 
@@ -22,9 +22,9 @@ from ..program.program import Program
 from ..program.target import JointTarget, PoseTarget
 from ..robot.ready_posture import ready_posture
 from ..spatial.pose import Pose
-from .past_faults import drive
+from .past_faults import ENOUGH, count_faults
 
-_LONGEST = 150
+LONGEST = 80
 """Moves of a program for which places are looked for."""
 _DRIVEN = 6
 """Places that are driven from, of those from which all targets are reached."""
@@ -47,9 +47,9 @@ def frames_that_fit(
         By the keys of the questions; nothing where the defaults do, or no place is found that does
         better than they.
     """
-    if len(program.moves) > _LONGEST or controller.robot.external_axes:
+    if not 0 < len(program.moves) <= LONGEST or controller.robot.external_axes:
         return {}
-    least = _faults(controller, program, start)
+    least = count_faults(controller, program, start, ENOUGH)
     found: dict[str, Pose] = {}
     for key, tool in _unknown(program):
         if not least:
@@ -57,7 +57,7 @@ def frames_that_fit(
         fitting = _places(controller, program, key, tool)
         for pose, _ in zip(fitting, range(_DRIVEN), strict=False):
             moved = _with(program, key, pose)
-            faults = _faults(controller, moved, start)
+            faults = count_faults(controller, moved, start, least)
             if faults < least:
                 least, found[key], program = faults, pose, moved
             if not least:
@@ -65,11 +65,11 @@ def frames_that_fit(
     return found
 
 
-def _faults(controller: Controller, program: Program, start: JointTarget | None) -> int:
-    try:
-        return len(drive(controller, program, start).faults)
-    except FlybyError:
-        return len(program.moves)
+def placed(program: Program, found: Mapping[str, Pose]) -> Program:
+    """A program with its unknown tools and work objects at such poses, which are still unknown."""
+    for key, pose in found.items():
+        program = _with(program, key, pose)
+    return replace(program, placed=(*program.placed, *found))
 
 
 def _unknown(program: Program) -> list[tuple[str, bool]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..door import spelt
-from ..errors import FaultCause, MotionError
+from ..errors import FaultCause, FlybyError, MotionError
 from ..motion.emulator.controller import Controller
 from ..motion.emulator.run import Run
 from ..program.assumed_places import assumed_places
@@ -19,7 +19,9 @@ _OF_PLACES = (
     FaultCause.CONFIGURATION,
 )
 """Faults of where the flange is sent, which the tool and the work object decide."""
-_AHEAD = 16
+ENOUGH = 5
+"""Faults after which no more are counted to tell what drives a program better."""
+_AHEAD = 4
 """Moves looked at behind a fault at first: twice as many each time that none is found, so that
 looking takes no more than a few times what driving does, however many faults there are."""
 
@@ -47,6 +49,17 @@ def drive(
     if moves_nothing(program):
         return DrivenProgram(program, (), ())
     return _Drive(controller, program, period).whole(start)
+
+
+def count_faults(
+    controller: Controller, program: Program, start: JointTarget | None, most: int
+) -> int:
+    """How many moves of a program cannot be driven; ``most`` of as many or more."""
+    drives = _Drive(controller, program, None, most)
+    try:
+        return min(most, len(drives.whole(start).faults))
+    except FlybyError:
+        return most
 
 
 def refuse_faults(
@@ -77,7 +90,14 @@ def moves_nothing(program: Program) -> bool:
 class _Drive:
     """One program on its way."""
 
-    def __init__(self, controller: Controller, program: Program, period: float | None) -> None:
+    def __init__(
+        self,
+        controller: Controller,
+        program: Program,
+        period: float | None,
+        most: int | None = None,
+    ) -> None:
+        self._most = most
         self._controller = controller
         self._program = program
         self._period = period
@@ -96,7 +116,7 @@ class _Drive:
             nowhere = error
             begun = start or self._controller.furthest_start(self._program)
             first, at = self._part(0, begun, count, error)
-        while first < count:
+        while first < count and len(self._faults) != self._most:
             if at is None:
                 first, at = self._next_place(first)
             else:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
+from ..door import spelt
+from ..errors import InputError
 from ..spatial.pose import IDENTITY
 from .move import Move
 from .program import Program
@@ -13,6 +17,7 @@ def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
 
     One that the program has set by then is what it is set to.
     """
+    placed = {name.casefold() for name in program.placed}
     asked = {
         question.key.casefold(): question.key
         for question in program.questions
@@ -25,12 +30,33 @@ def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
     for index, move in enumerate(program.moves):
         pair = id(move.tool), id(move.work_object)
         if pair not in known:
-            known[pair] = tuple(asked[name] for name in _at_default(move) if name in asked)
+            known[pair] = tuple(asked[n] for n in _at_default(move, placed) if n in asked)
         if known[pair]:
             found[index] = known[pair]
     return found
 
 
-def _at_default(move: Move) -> list[str]:
+def refuse_assumed(program: Program) -> None:
+    """Refuse a program that something is proven of, or written from, if a tool or work object of
+    it is not known: it would hold for what that is taken for.
+
+    Raises:
+        InputError: it names them, and the first move that uses one.
+    """
+    assumed = assumed_places(program)
+    if not assumed:
+        return
+    names = [*dict.fromkeys(name for names in assumed.values() for name in names)]
+    where = program.moves[min(assumed)].statement
+    be, it = ("is", "it is") if len(names) == 1 else ("are", "they are")
+    raise InputError(
+        f"{where}: {' and '.join(names)} {be} not known: nothing can be proven or written with "
+        f"what {it} taken for; say what {it} in a file ({spelt('answers')}; `flyby ask` writes one)"
+    )
+
+
+def _at_default(move: Move, placed: Collection[str]) -> list[str]:
+    """What of a move is at the controller's own, or was put to where the robot drives it."""
     parts = (move.tool.name, move.tool.tcp), (move.work_object.name, move.work_object.pose)
-    return [name.casefold() for name, pose in parts if pose == IDENTITY]
+    at = ((name.casefold(), pose) for name, pose in parts)
+    return [name for name, pose in at if pose == IDENTITY or name in placed]

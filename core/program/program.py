@@ -72,6 +72,8 @@ class Program:
         reading: the source files, for the patcher; None if it was not read; not part of the value.
         setup: the robot that it was read for, for tasks that name no other; not part
             of the value.
+        placed: names of tools and work objects that nobody knows, and that were put to where the
+            robot drives the program.
     """
 
     statements: tuple[Statement, ...]
@@ -85,6 +87,7 @@ class Program:
     sections: tuple[Section, ...] = field(default=(), compare=False, repr=False)
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
     setup: DrivenBy | None = field(default=None, compare=False, repr=False)
+    placed: tuple[str, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         robot = "" if self.setup is None else f" for {self.setup.robot.name}"

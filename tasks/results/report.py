@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from ...core.motion.emulator.binding_limits import LimitShare, limit_shares
 from ...core.motion.emulator.move_figures import lengths_and_speeds, zone_reaches
 from ...core.motion.emulator.run import Run
 from ...core.notebook import table
+from ...core.program.assumed_places import assumed_places
 from ...core.program.move import Move
 from ...core.program.origin import Ownership
 from ...core.program.program import Program
@@ -171,6 +173,7 @@ class Report:
         time_range: s, least and greatest such time by the spread of the robot's assumed figures;
             None where none has one.
         assumed: which figures these are.
+        unknown: names of tools and work objects that nobody says what they are.
         first_wait: s of it in which the robot waits before the first move that is driven.
         waiting: s of it spent in programmed waits, the first included.
         settling: s of it that settling takes.
@@ -189,6 +192,7 @@ class Report:
     driven_time: float
     time_range: tuple[float, float] | None
     assumed: tuple[str, ...]
+    unknown: tuple[str, ...]
     first_wait: float
     waiting: float
     settling: float
@@ -256,6 +260,7 @@ def make_report(
         driven_time=driven.duration,
         time_range=time_range,
         assumed=tuple(robot.spread),
+        unknown=tuple(dict.fromkeys(chain.from_iterable(assumed_places(program).values()))),
         first_wait=sum(float(part.run.path.route.dwell[0]) for part in driven.parts),
         waiting=waiting,
         settling=sum(move.settling for move in moves),

@@ -1,0 +1,77 @@
+"""Tools and work objects that nobody knows: named in the headline, never proven or written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.errors import InputError, MotionError
+from flyby.core.program.program import Program
+
+UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
+ROBOT = "abb/irb1600-6-145"
+
+
+def rapid(x: float, z: float, answers: str | Path | None = None) -> Program:
+    points = [(x, 0, z), (x, 100, z), (x, 100, z + 100), (x, 0, z + 100)]
+    moves = "\n".join(
+        f"MoveL [[{x},{y},{z}],[0,0,1,0],[0,0,0,0],{UNUSED}],v200,z5,tGrip\\WObj:=wTable;"
+        for x, y, z in points
+    )
+    text = f"MODULE M\nPROC main()\n{moves}\nENDPROC\nENDMODULE\n"
+    return flyby.read(text, robot=ROBOT, answers=answers, configuration="nearest")
+
+
+def test_they_are_named_with_the_time_that_rests_on_them() -> None:
+    run = flyby.emulate(rapid(700, 600))
+    assert not run.faults and not run.program.placed
+    assert run.report.unknown == ("tGrip", "wTable")
+
+
+def test_one_that_does_not_do_is_put_to_where_the_robot_drives_and_said() -> None:
+    run = flyby.emulate(rapid(0, 0))
+    assert not run.faults
+    assert run.program.placed == ("wTable",) and run.report.unknown == ("tGrip", "wTable")
+    said = [note.message for note in run.notes if "an example with which it drives" in note.message]
+    (message,) = said
+    assert message.startswith("wTable is not known, and the robot does not drive")
+    assert flyby.emulate(rapid(700, 600)).report.notes != run.report.notes
+
+
+def test_what_the_user_asks_to_stop_at_is_not_put_elsewhere() -> None:
+    with pytest.raises(MotionError):
+        flyby.emulate(rapid(0, 0), strict=True)
+
+
+@pytest.mark.parametrize("placed", [False, True])
+def test_nothing_is_proven_or_written_with_them(placed: bool, tmp_path: Path) -> None:
+    program = rapid(0, 0) if placed else rapid(700, 600)
+    program = flyby.emulate(program).program
+    assert bool(program.placed) == placed
+    for task in (flyby.zones, flyby.optimize):
+        with pytest.raises(InputError, match="tGrip and wTable are not known: nothing can"):
+            task(program)
+    with pytest.raises(InputError, match="nothing can be proven or written"):
+        flyby.write(program, tmp_path / "new.mod")
+
+
+def test_once_they_are_answered_all_is_done_with_them(tmp_path: Path) -> None:
+    answers = tmp_path / "a.toml"
+    lines = [
+        line[1:] if line.startswith(("#tGrip", "#wTable")) else line
+        for line in flyby.ask(rapid_file(tmp_path), robot=ROBOT).toml.splitlines()
+    ]
+    answers.write_text("\n".join(lines), "utf-8")
+    program = rapid(700, 600, answers)
+    assert flyby.emulate(program).report.unknown == ()
+    flyby.write(program, tmp_path / "new.mod")
+    assert "tGrip" in (tmp_path / "new.mod").read_text("utf-8")
+
+
+def rapid_file(folder: Path) -> Path:
+    move = f"MoveL [[700,0,600],[0,0,1,0],[0,0,0,0],{UNUSED}],v200,z5,tGrip\\WObj:=wTable;"
+    file = folder / "a.mod"
+    file.write_text(f"MODULE M\nPROC main()\n{move}\nENDPROC\nENDMODULE\n", "utf-8")
+    return file
