@@ -89,6 +89,19 @@ class TakenPlaces:
                     fits.append((-fit, arm.reach or np.inf, arm.name, arm))
         return [arm for *_, arm in sorted(fits, key=lambda item: item[:3])]
 
+    def most_taken_by(self, vendor: Vendor, arms: Iterable[Listed]) -> list[Listed]:
+        """Arms, those first that can take the most of them, of these the smallest."""
+        step = max(1, len(self.flanges) // _LABELLED)
+        single = [TakenPlaces((joints,), ()) for joints in self.postures[:_LABELLED]]
+        single += [TakenPlaces((), (flange,)) for flange in self.flanges[::step]]
+
+        def missed(arm: Listed) -> tuple[int, float, str]:
+            robot = vendor.robot(arm.name.removeprefix(f"{vendor.name}/"))
+            taken = sum(place._fit(vendor, robot) is not None for place in single)
+            return -taken, arm.reach or np.inf, arm.name
+
+        return sorted((arm for arm in arms if arm.axes in (4, 5, 6)), key=missed)
+
     def _fit(self, vendor: Vendor, robot: Robot) -> int | None:
         """How many of the compared configurations a robot has; None if it misses a place."""
         if any(len(joints) != robot.arm_size for joints in self.postures):

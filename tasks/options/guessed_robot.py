@@ -25,10 +25,13 @@ from ..setup import setup_of, start_of
 if TYPE_CHECKING:
     from ...core.program.program import Program
     from ...core.robot.arm_list import Listed
-    from ...core.vendor import Vendor
 
-_TRIED = 5
-"""Arms that are driven, over all sizes that can take the places."""
+_TRIED = 12
+"""Arms that are driven, over all sizes that can take the places; fewer by a long program."""
+_TRIED_MOVES = 600
+"""Moves that are driven so."""
+_USUAL = 6
+"""Axes."""
 _LONGEST = 400
 """Moves of a program that is driven by several arms to choose one."""
 _WORDS = 6
@@ -86,25 +89,36 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
     except FlybyError:
         if not path.is_file():
             return None
-    places = None if program is None else TakenPlaces.of(program)
+    arms = [arm for arm in all_listed(vendor) if arm.refused is None]
+    places = TakenPlaces((), ()) if program is None else TakenPlaces.of(program)
     assumed = ""
-    if program is not None and places is not None and not places.count:
+    if program is not None and not places.count:
         places = TakenPlaces.of(program, assumed=True)
         assumed = ", with its unknown tools and frames as they are assumed"
-    arms = [arm for arm in all_listed(vendor) if arm.refused is None]
     for text, named in _mentioned(path, program, arms):
-        fit = places.taken_by(vendor, named) if places is not None and places.count else []
+        fit = places.taken_by(vendor, named) if places.count else []
         return (*fit, *named)[0], f"{text!r} stands in its text or folder"
-    if places is None or not places.count:
-        return None
+    if program is None or not places.count:
+        return _middle(arms)
     fit = places.taken_by(vendor, arms)
+    why = f"{said_to_fit(fit, places.count)}{assumed}"
     if not fit:
+        fit, why = places.most_taken_by(vendor, arms)[:_TRIED], "none can take all its places"
+    # Those go first that reach as well what hangs on unknown frames, as it is taken for.
+    reach = [] if assumed else TakenPlaces.of(program, assumed=True).taken_by(vendor, fit)
+    if len(fit) == 1 or len(program.moves) > _LONGEST:
+        return (*reach, *fit)[0], why
+    count = max(2, min(_TRIED, _TRIED_MOVES // len(program.moves)))
+    return _first_that_drives(source, options, (reach or fit, fit), count), why
+
+
+def _middle(arms: list[Listed]) -> tuple[Listed, str] | None:
+    """An arm for a program that says no place, or cannot be read, so that it says why."""
+    known = [arm for arm in arms if arm.axes == _USUAL and arm.reach is not None]
+    if not known:
         return None
-    if program is not None and not assumed:
-        # Those go first that reach as well what hangs on unknown frames, as it is taken for.
-        fit = TakenPlaces.of(program, assumed=True).taken_by(vendor, fit) or fit
-    arm = _first_that_drives(source, options, vendor, fit, len(program.moves) if program else 0)
-    return arm, f"{said_to_fit(fit, places.count)}{assumed}"
+    middle = sorted(known, key=lambda arm: (arm.reach, arm.name))[len(known) // 2]
+    return middle, "one of middle reach, as the program says no place by which to tell"
 
 
 def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, SourceOptions]:
@@ -127,32 +141,48 @@ def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, Sour
 
 
 def _first_that_drives(
-    source: str | Path, options: SourceOptions, vendor: Vendor, arms: list[Listed], moves: int
+    source: str | Path, options: SourceOptions, arms: tuple[list[Listed], list[Listed]], count: int
 ) -> Listed:
-    """The arm of some that drives a program without a fault, or with the fewest."""
-    if len(arms) == 1 or moves > _LONGEST:
-        return arms[0]
-    step = max(1, len(arms) // _TRIED)
-    faults: dict[str, int] = {}
-    for arm in arms[::step][:_TRIED]:
-        faults[arm.name] = _faults(source, replace(options, robot=arm.name))
-        if not faults[arm.name]:
-            return arm
-    return min(arms[::step][:_TRIED], key=lambda arm: faults[arm.name])
+    """The arm of some that drives a program without a fault, or with the fewest.
+
+    Args:
+        arms: those that are tried with unknown frames as they are taken for; and, if none of them
+            will do, those with these frames put to where they drive the program.
+        count: how many of them.
+    """
+    from ...core.driving.past_faults import ENOUGH
+
+    best, least = arms[0][0], ENOUGH
+    for tried, placing in zip(arms, (False, True), strict=True):
+        for arm in tried[:: max(1, len(tried) // count)][:count]:
+            faults = _faults(source, replace(options, robot=arm.name), least, placing)
+            if faults < least:
+                best, least = arm, faults
+            if not faults:
+                return best
+    return best
 
 
-def _faults(source: str | Path, options: SourceOptions) -> int:
-    """How many moves an arm cannot drive."""
-    from ...core.driving.past_faults import drive
+def _faults(source: str | Path, options: SourceOptions, most: int, placing: bool) -> int:
+    """How many moves an arm cannot drive; ``most`` of as many or more.
+
+    Args:
+        placing: whether it is asked with the program's unknown frames put to where it can; with
+            none, as many as may be.
+    """
+    from ...core.driving.fitting_frames import LONGEST, frames_that_fit, placed
+    from ...core.driving.past_faults import count_faults
     from ...core.motion.emulator.controller import Controller
+    from ...core.program.assumed_places import assumed_places
 
     setup = setup_of(options)
     program = read_with(source, options)
-    try:
-        controller = Controller(setup.vendor, setup.robot)
-        return len(drive(controller, program, start_of(program), None).faults)
-    except FlybyError:
-        return len(program.moves)
+    controller, start = Controller(setup.vendor, setup.robot), start_of(program)
+    if placing:
+        if len(program.moves) > LONGEST or not assumed_places(program):
+            return most
+        program = placed(program, frames_that_fit(controller, program, start))
+    return count_faults(controller, program, start, most)
 
 
 def _mentioned(

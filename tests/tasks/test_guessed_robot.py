@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from flyby.core.errors import OptionError
+import flyby
+from flyby.core.errors import FlybyError
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
@@ -65,11 +66,37 @@ def test_what_hangs_on_an_unknown_tool_counts_where_nothing_else_does(tmp_path: 
     assert "with its unknown tools and frames as they are assumed" in said
 
 
-def test_a_program_that_says_no_place_asks_for_its_robot(tmp_path: Path) -> None:
-    file = rapid(tmp_path, "MoveJ pNowhere,v100,fine,tool0;")
-    assert taken(file) == (None, "")
-    with pytest.raises(OptionError, match="which robot"):
-        read_or_guess(file, SourceOptions())
+@pytest.mark.parametrize(
+    "body", ["MoveJ pNowhere,v100,fine,tool0;", "MoveJ ) p;", 'TPWrite "hello";']
+)
+def test_a_program_that_says_no_place_is_read_for_some_arm(tmp_path: Path, body: str) -> None:
+    robot, said = taken(rapid(tmp_path, body))
+    assert robot is not None and "one of middle reach, as the program says no place" in said
+
+
+def test_the_true_cause_is_said_where_no_robot_is_named(tmp_path: Path) -> None:
+    program = read_or_guess(rapid(tmp_path, "MoveJ pNowhere,v100,fine,tool0;"), SourceOptions())
+    with pytest.raises(FlybyError, match="pNowhere"):
+        flyby.emulate(program)
+
+
+def test_where_no_arm_takes_all_places_one_is_taken_that_drives_most(tmp_path: Path) -> None:
+    file = rapid(tmp_path, at(700, 0, 600), at(700, 90, 600), at(9000, 0, 600), at(700, 0, 500))
+    robot, said = taken(file)
+    assert "none can take all its places" in said
+    (fault,) = flyby.emulate(flyby.read(file, robot=robot)).faults
+    assert fault.move == 2
+
+
+def test_an_arm_is_taken_that_drives_the_known_places_with_an_unknown_frame_put_right(
+    tmp_path: Path,
+) -> None:
+    point = "MoveL [[%d,215,300],[0,0.7071,0.7071,0],[0,0,0,0]," + UNUSED + "],v100,fine,tool0"
+    work = [point % x + "\\WObj:=wPallet;" for x in (0, 60)]
+    file = rapid(tmp_path, at(1100, 300, 1100), at(1150, 900, 900), *work)
+    robot, _ = taken(file)
+    run = flyby.emulate(flyby.read(file, robot=robot))
+    assert not run.faults and run.report.unknown == ("wPallet",)
 
 
 def test_who_names_a_robot_is_heard(tmp_path: Path) -> None:
