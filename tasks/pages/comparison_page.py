@@ -22,6 +22,7 @@ from ...drawing.page.track_content import (
     PageTrack,
 )
 from ...drawing.page.tracks import page_motion
+from ...identification.alignment import STILL
 from ..results.comparison import COLUMNS, Comparison
 from ..results.report import target_text
 from ..results.runs import Run
@@ -41,6 +42,9 @@ _MOST = 20_000
 """Samples of a log that a page shows."""
 _MEETINGS = 400
 """Places at which both are held together."""
+_TOLD = 0.01
+"""s by which a sample may be late or early, for all that its place and the log's noise tell, and
+still says how late the robot is."""
 _WINDOW = 0.02
 """s over which the speed of a logged TCP is taken at least: its places are noisy."""
 _MOVES = (
@@ -109,7 +113,7 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
     found, aligned = compared.residuals, compared.alignment
     rows = slice(None, None, max(1, len(found.t) // _MOST))
     t = found.t[rows] - aligned.offset
-    late = 1e3 * (t - aligned.time[rows])
+    late = 1e3 * _late(compared, t, aligned.time[rows])
     path = np.round(1e3 * found.path[rows], 3)
     speed = 1e3 * _speed(found.t, found.tcp)[rows]
     values = np.column_stack(
@@ -148,6 +152,15 @@ def measured_track(compared: Prediction, draft: PageDraft, group: str = "") -> P
         tool=[one.name for one in draft.arms[-1].tools].index(tool),
         takes=aligned.logged_moving,
     )
+
+
+def _late(compared: Prediction, t: FloatArray, time: FloatArray) -> FloatArray:
+    """(K,) s that samples are behind the emulation: between those whose places tell their time,
+    where the robot stands."""
+    driven = compared.driven.trajectory
+    speed = np.interp(time, driven.t, np.linalg.norm(driven.dq_motor, axis=1))
+    told = speed * _TOLD > max(STILL, 3.0 * float(np.linalg.norm(compared.log.noise)))
+    return np.interp(t, t[told], (t - time)[told]) if told.any() else t - time
 
 
 def _from_zero(t: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
