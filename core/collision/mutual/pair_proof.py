@@ -35,6 +35,9 @@ _LOCATED = 2e-3
 """m of motion below which a place that is too near counts as found."""
 _STALLED = 1e-4
 """m of motion below which nothing is halved any more."""
+_FOLLOWED = 64
+"""Pairs of intervals that are near at their middles, of each pair of moves, which are halved first:
+one of them that is found is enough."""
 _CHUNK = 512
 _MOST_NEAR = 8_000_000
 """Pairs of intervals and bodies that are looked at first, at most."""
@@ -214,18 +217,24 @@ class _Search:
         self._wanted = max(clearance - TOLERANCE, 1e-9)
         self._verdict = PairVerdict(clearance)
         self._first = meetings.until
+        self._later: list[IntArray] = []
 
     def run(self) -> PairVerdict:
         """Look at everything that may come near."""
         items = self._begun()
-        while len(items):
+        while len(items) or self._later:
+            if not len(items):
+                items = self._meeting(self._later.pop())
+                continue
             self._verdict.looks += len(items)
             self._left -= len(items)
             found = self._bounds(items)
             open_ones = ~(found.lower >= self._wanted)
             items, found = items[open_ones], found.chosen(open_ones)
             if self._left < 0:
-                self._note(items, found, np.ones(len(items), dtype=bool), ConflictCause.EXHAUSTED)
+                items = np.concatenate([items, *self._later])
+                unknown, every = PairBounds.unknown(len(items)), np.ones(len(items), dtype=bool)
+                self._note(items, unknown, every, ConflictCause.EXHAUSTED)
                 break
             items = self._judged(items, found)
             items = self._halved(items)
@@ -315,7 +324,24 @@ class _Search:
             (stalled, ConflictCause.STALLED),
         ):
             self._note(items, found, chosen, cause)
-        return self._meeting(items[~(near | off | stalled)])
+        left = ~(near | off | stalled)
+        put_off = self._many(items, np.where(left & (distance < self._wanted), distance, np.inf))
+        if put_off.any():
+            self._later.append(items[put_off])
+        return self._meeting(items[left & ~put_off])
+
+    def _many(self, items: IntArray, distance: FloatArray) -> NDArray[np.bool_]:
+        """Which items (K,) at finite distances are not among the nearest of their pair of moves."""
+        prover, order = self._prover, np.argsort(distance, kind="stable")
+        moves = prover.one.moves[items[order, 0]], prover.other.moves[items[order, 1]]
+        group = np.unique(np.stack(moves, -1), axis=0, return_inverse=True)[1].ravel()
+        again = np.argsort(group, kind="stable")
+        begins = np.searchsorted(group[again], group)
+        rank = np.empty(len(items), dtype=np.int64)
+        rank[again] = np.arange(len(items))
+        many = np.zeros(len(items), dtype=np.bool_)
+        many[order] = (rank - begins >= _FOLLOWED) & np.isfinite(distance[order])
+        return many
 
     def _always_at_once(self, items: IntArray) -> NDArray[np.bool_]:
         """Whether both may be anywhere on their intervals at one time, (K,)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from flyby.core.cell.floor import bare_cell
+from flyby.core.collision.mutual import pair_proof
 from flyby.core.collision.mutual.meetings import Meetings
 from flyby.core.collision.mutual.pair_proof import PairProver
 from flyby.core.collision.mutual.robot_motion import RobotMotion
@@ -107,6 +109,37 @@ def test_at_any_time_names_every_pair_of_moves_that_meets(seed: int, gap: float)
             # Zones belong to the one move or to the other.
             near = any((a + x, b + y) in verdict.conflicts for x in (-1, 0, 1) for y in (-1, 0, 1))
             assert near or least >= CLEARANCE - 1e-4
+
+
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.integers(0, 10_000), st.floats(0.9, 1.3), st.floats(0.2, 0.8))
+def test_what_is_followed_first_changes_no_verdict(seed: int, gap: float, share: float) -> None:
+    """Where the two may be at once on parts of moves alone, many pairs of intervals that are near
+    are not a conflict, and all have to be looked at."""
+    prover = two(seed, gap)
+    limits = [share * motion.run.duration for motion in (prover.one, prover.other)]
+
+    def together(i: np.ndarray, j: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        spans = prover.one.own_time[i], prover.other.own_time[j]
+        over = [span[:, 0] <= limit for span, limit in zip(spans, limits, strict=True)]
+        whole = [span[:, 1] <= limit for span, limit in zip(spans, limits, strict=True)]
+        return over[0] & over[1], whole[0] & whole[1]
+
+    meetings = Meetings.at_any_time()
+    meetings = replace(meetings, together=together)
+    found = []
+    for followed in (1, 10**9):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(pair_proof, "_FOLLOWED", followed)
+            found.append(prover.prove(CLEARANCE, meetings))
+    assert set(found[0].conflicts) == set(found[1].conflicts)
+
+
+def test_a_budget_that_ends_early_leaves_nothing_out() -> None:
+    facing = Pose((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+    prover = PairProver(motion("a", facing, 3), motion("b", Pose((0.9, 0.0, 0.0)), 4))
+    for budget in (10, 100, 1000, 10_000):
+        assert not prover.prove(CLEARANCE, Meetings.at_any_time(), budget).proven
 
 
 def test_conflicts_say_where_and_when() -> None:
