@@ -165,7 +165,6 @@ def pull_path_limits(
     torque_bar = np.zeros_like(limits.torque)
     planned_bar, indices = np.zeros_like(made.zones.planned), pieces.indices
     made.stretches.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
-    made.approach.pull(made.rows.spacing, made.binding, bar.ceiling, bar.spacing)
     pull_between(
         states,
         made.rows.spacing,

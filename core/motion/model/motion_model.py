@@ -135,15 +135,6 @@ class MotionModel:
         default=0.0,
         fit=FitRange(),
     )
-    approach: float = figure(
-        "time.approach_s",
-        RealNumber(_WAIT),
-        Stage.TIMING,
-        "within which stops are closed in on: speed is at most the way left over this time",
-        unit="s",
-        default=0.0,
-        fit=FitRange(0.0, 0.1, 2e-3),
-    )
     ramp: float = figure(
         "time.ramp_s",
         RealNumber(_WAIT),

@@ -5,8 +5,7 @@ Accelerations are rows on u = σ̈ and x: joints q' u + q'' x, and along the pat
 TCP's speed |p'| u + (p' · p'' / |p'|) x and of the tool's rate of turn likewise. Joints that torque
 limits (`torque.Torque`) have rows of their own behind these. Centripetal acceleration |p''⊥| x is a
 ceiling again, and so are what velocities between samples allow (`between_samples`), how fast legs
-that overlap drive zones (`superposed_legs`), what zones take at least (`least_zone_times`), and how
-stops are closed in on (`stop_approach`).
+that overlap drive zones (`superposed_legs`), and what zones take at least (`least_zone_times`).
 """
 
 from __future__ import annotations
@@ -33,7 +32,6 @@ from .between_samples import lower_between
 from .least_zone_times import ZoneStretches
 from .rates import bind, rates, sideways
 from .stamping_kernels import StampRows
-from .stop_approach import StopApproach
 from .superposed_legs import SuperposedZones, lower_ceilings, room_along
 from .timed_zones import ROOM, TimedZones
 from .torque_rows import Shares, torque_rows
@@ -58,7 +56,7 @@ class SegmentLimits:
         speeds, kinds: (M,), of the segments, which all this follows from but for swivels.
         swivels: whether a segment turns its tool by one.
         zones_bind: whether zones have speeds of their own beside these: of legs that overlap,
-            of the least time that a zone takes, of blends in time; and stops on their approach.
+            of the least time that a zone takes, of blends in time.
     """
 
     velocity: FloatArray
@@ -256,12 +254,11 @@ class PathLimits:
         zones: those that legs drive superposed.
         stretches: those that take at least a while.
         timed: those that are blended in time.
-        approach: how stops are closed in on.
         binding: (K + 1, 3), at each knot the sample, the row and the segment whose velocity
             limit is the ceiling; `CENTRIPETAL` in the place of the row where that is; `ZONE` with
-            the zone in the place of the segment where a zone is, `LEAST_TIME` with the stretch,
-            `TIMED` with the corner and `APPROACH` with the knot of the stop; a code from `BETWEEN`
-            on where limits between samples are; -1 at stops.
+            the zone in the place of the segment where a zone is, `LEAST_TIME` with the stretch
+            and `TIMED` with the corner; a code from `BETWEEN` on where limits between samples
+            are; -1 at stops.
     """
 
     rows: stamping.StampLimits
@@ -270,7 +267,6 @@ class PathLimits:
     zones: SuperposedZones
     stretches: ZoneStretches
     timed: TimedZones
-    approach: StopApproach
     binding: IntArray
 
 
@@ -282,7 +278,6 @@ def path_limits(
     zones: SuperposedZones,
     stretches: ZoneStretches,
     timed: TimedZones,
-    approach: StopApproach,
     shares: Shares | None = None,
     known: PathLimits | None = None,
 ) -> PathLimits:
@@ -296,7 +291,6 @@ def path_limits(
         zones: those that legs drive superposed.
         stretches: those that take at least a while.
         timed: those that are blended in time.
-        approach: how stops are closed in on.
         shares: (S, L), what share of its torque's limit each joint takes; None if none is limited.
         known: of the same path with the same limits but of velocities; its rows are taken.
     """
@@ -323,11 +317,10 @@ def path_limits(
         lower_ceilings(states, spacing, indices, acceleration, zones, ceiling, binding)
         stretches.lower(spacing, ceiling, binding)
         timed.lower(ceiling, binding)
-        approach.lower(spacing, ceiling, binding)
     if known is None and shares is not None:
         torque_rows(shares, pieces.interval_ends, torque_left(pieces, limits), rows, plain)
     found = stamping.StampLimits(spacing, *rows, ceiling)
-    return PathLimits(found, limited, shares, zones, stretches, timed, approach, binding)
+    return PathLimits(found, limited, shares, zones, stretches, timed, binding)
 
 
 def rooms(zones: SuperposedZones, timed: TimedZones, pieces: Pieces) -> FloatArray:

@@ -21,7 +21,6 @@ from .limits import PathLimits, SegmentLimits, path_limits
 from .rests import InPosition, Rests
 from .stamping import Stamp, StampingError, stamp
 from .start_ramp import SUDDEN, StartRamp
-from .stop_approach import StopApproach
 from .superposed_legs import SuperposedZones
 from .timed_zones import TimedZones
 from .torque_rows import Shares
@@ -286,19 +285,8 @@ def stamp_path(
         zones = SuperposedZones.of(path.layout, path.pieces, path.tcp.curves.position)
     stretches = ZoneStretches.of(path.layout, path.pieces, along.states, path.model.zone_time)
     timed = TimedZones.of(path.layout, path.pieces, path.sigma, path.joint)
-    stops = path.pieces.first_interval[path.pieces.stop]
-    approach = StopApproach(stops, path.model.approach)
     made = path_limits(
-        along.states,
-        along.spacing,
-        path.pieces,
-        limits,
-        zones,
-        stretches,
-        timed,
-        approach,
-        shares,
-        known,
+        along.states, along.spacing, path.pieces, limits, zones, stretches, timed, shares, known
     )
     try:
         found = stamp(made.rows)

@@ -96,7 +96,6 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "time.in_position_rad": (3e-3, SWIFT),
     "time.in_position_time_s": (0.06, SWIFT),
     "time.jerk": (25.0, JERK),
-    "time.approach_s": (0.012, {"time.approach_s": 0.008}),
     "limit.tcp_acceleration": (3.5, CORNERS),
     "limit.reorientation_acceleration": (2.0, {}),
     "limit.centripetal": (1.5, CORNERS),

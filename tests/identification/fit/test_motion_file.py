@@ -111,7 +111,6 @@ OTHER = MotionModel(
     duration=DurationRule.THIRDS,
     start_ramp=0.125,
     zone_time=0.125,
-    approach=0.0625,
     blend_acceleration=1.25,
     ramp=0.0625,
     smoothing=(0.5, 0.25),

@@ -133,7 +133,6 @@ MODELS = {
         reorientation_acceleration=3.0,
     ),
     "zone times": replace(VENDOR.motion(), zone_time=0.08),
-    "approach": replace(VENDOR.motion(), approach=0.03),
     "torque": replace(
         VENDOR.motion(),
         torque=Torque(

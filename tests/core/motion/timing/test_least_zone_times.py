@@ -15,7 +15,6 @@ from flyby.core.motion.model.rules import OrientationZone
 from flyby.core.motion.timing.between_samples import BETWEEN
 from flyby.core.motion.timing.least_zone_times import LEAST_TIME
 from flyby.core.motion.timing.limits import CENTRIPETAL
-from flyby.core.motion.timing.stop_approach import APPROACH
 from flyby.core.motion.timing.superposed_legs import ZONE
 from flyby.core.motion.timing.timed_zones import TIMED
 from flyby.core.program.move import MoveL
@@ -106,5 +105,5 @@ def test_what_logs_showed_of_the_controller() -> None:
 
 def test_what_stands_for_rows_is_told_apart() -> None:
     """In one column of integers a path says what its ceilings are made of."""
-    codes = (ZONE, CENTRIPETAL, LEAST_TIME, TIMED, APPROACH)
+    codes = (ZONE, CENTRIPETAL, LEAST_TIME, TIMED)
     assert len(set(codes)) == len(codes) and max(codes) < -1 < 0 < BETWEEN
