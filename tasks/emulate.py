@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from ..core.display import counted
 from ..core.door import spelt
 from ..core.errors import FaultCause, MotionError, Note
-from ..core.files.toml_text import value_text
 from .fitting import arms_that_fit
 from .options.entries import TIME, Extent, number, switch
 from .options.keywords import by_keywords
@@ -110,6 +109,7 @@ def _with_places(program: Program, setup: Setup, controller: Controller) -> Prog
     from ..core.driving.fitting_frames import frames_that_fit, placed
     from ..core.language import FrameAnswers
     from ..core.program.assumed_places import assumed_places
+    from ..core.source.execution.answers_text import answer_text
 
     says = setup.vendor.reader
     if not isinstance(says, FrameAnswers) or not assumed_places(program):
@@ -124,8 +124,8 @@ def _with_places(program: Program, setup: Setup, controller: Controller) -> Prog
         notes.append(
             Note(
                 f"{question.key} is not known, and the robot does not drive the program with the "
-                f"controller's own: {value_text(answer)} is taken, an example with which it drives "
-                f"more of it; say what it is in a file ({spelt('answers')})",
+                f"controller's own: {answer_text(answer)} is taken, an example with which it "
+                f"drives more of it; say what it is in a file ({spelt('answers')})",
                 span=question.span,
             )
         )

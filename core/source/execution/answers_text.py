@@ -92,11 +92,16 @@ def _entry(question: Question, several: bool) -> list[str]:
     about = "; ".join(" ".join(part.split()) for part in told if part)
     line = f"{key_text(question.key)} = "
     if question.taken is not None:
-        line += value_text(_plain(question.taken))
+        line += answer_text(question.taken)
     else:
         example: Answer = 0.0 if question.example is None else question.example
-        line = f"#{line}{value_text(_plain(example))}"
+        line = f"#{line}{answer_text(example)}"
     return [f"# {where}{f': {about}' if about else ''}", line]
+
+
+def answer_text(answer: Answer) -> str:
+    """An answer as it is put into a file."""
+    return value_text(_plain(answer))
 
 
 def _plain(answer: Answer) -> object:

@@ -12,6 +12,7 @@ import pytest
 from flyby.core.driving.past_faults import drive
 from flyby.core.errors import SourceError
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.assumed_places import assumed_places
 from flyby.core.program.move import Move
 from flyby.core.program.program import Program
 from flyby.core.program.target import PoseTarget
@@ -384,3 +385,19 @@ def test_a_function_that_the_way_taken_does_not_return_from_is_asked_for(tmp_pat
     assert next(q for q in answered if q.key == "look()").answered
     with pytest.raises(SourceError, match="ends without RETURN and a value"):
         read(START + "$VEL.CP=n()\nEND\nDEFFCT REAL n()\nENDFCT\nDEF o()\n", tmp_path)
+
+
+def test_a_frame_that_is_declared_and_nowhere_set_is_assumed_by_its_name(tmp_path: Path) -> None:
+    body = (
+        "DECL FRAME BASE_DATA[32]\nBASE_DATA[1]={X 1000,Y 0,Z 0,A 0,B 0,C 0}\n"
+        + START
+        + "$BASE=BASE_DATA[3]\nLIN {X 900,Y 0,Z 700,A 0,B 90,C 0}\n"
+    )
+    program = read(body, tmp_path)
+    assert program.moves[-1].work_object.name == "BASE_DATA[3]"
+    assert assumed_places(program) == {1: ("BASE_DATA[3]",)}
+    answered = read(
+        body, tmp_path, '"BASE_DATA[3]" = { X = 50, Y = 0, Z = 0, A = 0, B = 0, C = 0 }'
+    )
+    assert not assumed_places(answered)
+    assert answered.moves[-1].work_object.pose.position[0] == pytest.approx(0.05)

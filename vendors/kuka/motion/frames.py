@@ -6,6 +6,7 @@ With ``$IPO_MODE=#TCP`` the robot carries the work: ``$BASE`` is then the tool t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -34,6 +35,7 @@ from ..values.values import (
 Note = Callable[[str, str, Span], None]
 
 
+_DATUM = re.compile(r"[\w$]+(\[\d+\])?")
 _UNSET = {
     "$tool": ("the flange is taken for the TCP", "BAS(#TOOL,1) or $TOOL=TOOL_DATA[1]"),
     "$base": ("the world is taken for the base", "BAS(#BASE,1) or $BASE=BASE_DATA[1]"),
@@ -111,7 +113,7 @@ class Placements:
                 f"that says it, or {unknown.answerable}",
                 span,
             )
-            value = value if taken else null_frame()
+            value = value if taken else null_frame(_datum(unknown.key))
         if not isinstance(value, Struct):
             raise SourceError(f"{name.upper()} is no frame", span)
         self._remark(name, value, span)
@@ -150,6 +152,11 @@ class Placements:
             return Load(float(mass), centre.position, (x, y, z), centre.quaternion, value.label)
         except InputError as error:
             raise SourceError(f"$LOAD: {error}", span) from None
+
+
+def _datum(key: str) -> str | None:
+    """What a frame of zeros is taken for, if that is a datum: it is asked for by its name."""
+    return key if _DATUM.fullmatch(key) else None
 
 
 def _pose(frame: Struct) -> Pose:
