@@ -306,6 +306,15 @@ def test_late_calls():
         program('%"part"+NumToStr(GInput(g),0)%;')
 
 
+@pytest.mark.parametrize("call", ['CallByVar "part",GInput(g)', '%"part"+NumToStr(GInput(g),0)%'])
+def test_a_late_call_of_an_unknown_number_calls_the_first_of_that_name(call) -> None:
+    """A dispatcher that a PLC tells what to do: its routines are what moves the robot."""
+    routines = "PROC part12()\nat 12;\nENDPROC\nPROC Part3()\nat 3;\nENDPROC\nPROC party()\nENDPROC"
+    assert heights(f"{call};", "", routines, answers=Answers(goes_on=True)) == [3]
+    zero = routines + "\nPROC part0()\nat 0;\nENDPROC"
+    assert heights(f"{call};", "", zero, answers=Answers(goes_on=True)) == [0]
+
+
 def test_a_parameter_by_reference_is_the_element_that_it_was_at_the_call():
     both = "PROC both(INOUT num n,INOUT num m)\nn:=n+1;\nm:=7;\nENDPROC"
     body = "n:=1;\nboth n,g{n};\nat g{1};\nat n;"

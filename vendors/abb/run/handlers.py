@@ -10,6 +10,7 @@ from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Argument, Invoke
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope
+from ..values.types import Unknown
 
 
 class Keeping(Protocol):
@@ -28,7 +29,12 @@ class Running(Protocol):
     out: Transcript
 
     def call_named(
-        self, name: str, arguments: tuple[Argument, ...], scope: Scope, span: Span
+        self,
+        name: str,
+        arguments: tuple[Argument, ...],
+        scope: Scope,
+        span: Span,
+        unknown: Unknown | None = None,
     ) -> None:
         """Call the procedure that a string names."""
 

@@ -139,7 +139,10 @@ def _call_by_var(run: Running, invoke: Invoke, scope: Scope) -> None:
     """``CallByVar "part", n``: the procedure ``part1``, …"""
     bound = bind(invoke, ("Name", "Number"), ())
     name = run.evaluator.known(bound.value(0), scope, STRING, "CallByVar")
-    run.call_named(f"{name}{bound.number(run.evaluator, 1, scope):g}", (), scope, invoke.span)
+    number = run.evaluator.evaluate(bound.value(1), scope)
+    unknown = number if isinstance(number, Unknown) else None
+    whole = f"{name}{bound.number(run.evaluator, 1, scope):g}"
+    run.call_named(whole, (), scope, invoke.span, unknown)
 
 
 def _calibrate(run: Running, invoke: Invoke, scope: Scope) -> None:

@@ -290,14 +290,19 @@ class Interpreter(RapidHost):
         return replace(statement, arguments=tuple(present(statement.arguments, scope)))
 
     def call_named(
-        self, name: str, arguments: tuple[tree.Argument, ...], scope: Scope, span: Span
+        self,
+        name: str,
+        arguments: tuple[tree.Argument, ...],
+        scope: Scope,
+        span: Span,
+        unknown: Unknown | None = None,
     ) -> None:
         """Call the procedure that a string names.
 
         Raises:
             SourceError: there is none.
         """
-        call_named(self, name, arguments, scope, span)
+        call_named(self, name, arguments, scope, span, unknown)
 
     def call_function(self, routine: tree.Routine, call: tree.Call, scope: Scope) -> Value:
         reader, self.evaluator.reader = self.evaluator.reader, ELSEWHERE
