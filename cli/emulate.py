@@ -12,7 +12,7 @@ import typer
 from ..core.errors import EntryError, FlybyError, InputError, OptionError
 from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
-from ..tasks.ask import ask_with
+from ..tasks.ask import ask_with, next_command
 from ..tasks.catalogue import registry
 from ..tasks.emulate import EmulateOptions, emulate_with
 from ..tasks.files.outputs import (
@@ -289,4 +289,4 @@ def ask(
     else:
         for line in questions.said or ["nothing is asked"]:
             print_rich(line)
-        print_rich(f"wrote {out}")
+        print_rich(f"wrote {out}", f"next: {next_command(questions, program, out, source)}")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.door import spelt
 from .options.guessed_robot import read_or_guess
 from .options.keywords import by_keywords
 from .read import SourceOptions
@@ -15,6 +17,29 @@ if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..core.program.question import Question
     from .results.questions import Questions
+
+
+def next_command(questions: Questions, program: Path, out: Path, options: SourceOptions) -> str:
+    """The command that drives a program with the file of what it asks, as it is typed.
+
+    Args:
+        questions: of the program.
+        out: the file.
+        options: with which it was asked.
+    """
+    words = ["flyby", "emulate", str(program)]
+    if options.cell is not None:
+        words += ["--cell", str(options.cell)]
+    elif questions.robot and options.task is None:
+        words += ["--robot", questions.robot]
+    for name in ("vendor", "motion", "machine_data", "configuration", "entry", "task", "start"):
+        value = getattr(options, name)
+        words += [] if value is None else [spelt(name), str(value)]
+    if options.cycles != 1:
+        words += [spelt("cycles"), str(options.cycles)]
+    for other in options.others:
+        words += ["--with", str(other)]
+    return shlex.join([*words, "--io", str(out)])
 
 
 def ask_with(source: str | Path, options: SourceOptions) -> Questions:
@@ -38,15 +63,22 @@ def ask_with(source: str | Path, options: SourceOptions) -> Questions:
     program = read_or_guess(source, options)
     reading = program.reading
     name = Path(reading.main).name if isinstance(reading, Reading) else program.name
-    return Questions.of(_with_places(program), name)
+    named = "" if program.setup is None or _in_backup(program) else program.setup.robot.name
+    return Questions.of(_with_places(program), name, named)
+
+
+def _in_backup(program: Program) -> bool:
+    """Whether a program's robot is that of its backup, which needs no name."""
+    return setup_of_program(program).backup is not None
 
 
 def _with_places(program: Program) -> tuple[Question, ...]:
-    """What a program asks; unknown tools and frames that keep it from being driven have examples
-    with which it can be."""
+    """What a program asks; unknown tools and frames that keep it from being driven are taken for
+    what lets it be driven."""
     from ..core.driving.fitting_frames import frames_that_fit
     from ..core.language import FrameAnswers
     from ..core.motion.emulator.controller import Controller
+    from ..core.source.execution.answers_text import FOUND
 
     setup = setup_of_program(program)
     says = setup.vendor.reader
@@ -59,8 +91,8 @@ def _with_places(program: Program) -> tuple[Question, ...]:
         if pose is not None and question.table == "values" and question.example is not None:
             example = says.frame_answer(question.example, pose)
             if example is not None:
-                said = f"not known; with this example {setup.robot.name} drives more of its moves"
-                question = replace(question, example=example, meanwhile=said)
+                said = f"{FOUND}: with it {setup.robot.name} drives more of the moves"
+                question = replace(question, taken=example, example=example, meanwhile=said)
         asked.append(question)
     return tuple(asked)
 

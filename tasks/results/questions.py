@@ -15,15 +15,18 @@ class Questions(tuple[Question, ...]):
 
     Attributes:
         name: of the program's file.
+        robot: that it was read for, if it has to be named.
     """
 
     name: str
+    robot: str
 
     @classmethod
-    def of(cls, questions: tuple[Question, ...], name: str) -> Questions:
+    def of(cls, questions: tuple[Question, ...], name: str, robot: str = "") -> Questions:
         """The questions of a program."""
         made = cls(questions)
         made.name = name
+        made.robot = robot
         return made
 
     @property

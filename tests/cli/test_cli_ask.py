@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -89,3 +90,35 @@ def test_a_wait_that_takes_time_is_not_said_to_take_none(flyby: Flyby, tmp_path:
     answers.write_text('[durations]\n"WaitDI diPart,1" = 2\n', "utf-8")
     result = flyby("emulate", station, "--entry", "Pick", "--io", answers)
     assert known not in result.stderr and "cycle time 2.990 s" in result.stdout
+
+
+UNKNOWN_FRAME = {
+    "m.mod": (
+        "MODULE m\nCONST robtarget p1:=[[0,0,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+        "CONST robtarget p2:=[[0,300,900],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+        "PROC main()\nMoveJ p1,v500,fine,tool0\\WObj:=wobjTable;\n"
+        "MoveL p2,v500,fine,tool0\\WObj:=wobjTable;\nENDPROC\nENDMODULE\n",
+        ["--robot", "abb/irb1600-6-145"],
+    ),
+    "m.src": (
+        "DEF m( )\n$TOOL=$NULLFRAME\n$BASE=BASE_DATA[5]\n"
+        "PTP {X 0,Y 0,Z 900,A 0,B 90,C 0,S 2,T 10}\nLIN {X 0,Y 300,Z 900,A 0,B 90,C 0}\nEND\n",
+        ["--robot", "kuka/kr30-3"],
+    ),
+}
+
+
+@pytest.mark.parametrize("file", UNKNOWN_FRAME)
+def test_the_command_that_is_said_drives_with_what_was_found(
+    flyby: Flyby, tmp_path: Path, file: str
+) -> None:
+    text, robot = UNKNOWN_FRAME[file]
+    program, answers = tmp_path / file, tmp_path / "my answers.toml"
+    program.write_text(text, "utf-8")
+    assert flyby("emulate", program, *robot).exit_code != 0
+    result = flyby("ask", program, *robot, "--cycles", "2", "--out", answers)
+    (line,) = (line for line in result.stdout.splitlines() if line.startswith("next: "))
+    words = shlex.split(line.removeprefix("next: "))
+    assert words[:2] == ["flyby", "emulate"] and str(answers) in words
+    assert "found by trying, and not measured" in answers.read_text("utf-8")
+    assert flyby(*words[1:]).exit_code == 0

@@ -24,6 +24,11 @@ _HEAD = """\
 # structures may be tables {{ x = 1 }}, arrays [1, 2] or texts as the program writes them.
 # What is read again and again has answers in turn in [sequences]: a list for each name.
 """
+FOUND = "found by trying, and not measured"
+"""Said of what is taken for a frame or a tool with which a program can be driven."""
+_HEAD_FOUND = """\
+# But what is "{found}" holds as it stands: put in what it is.
+"""
 _LONGEST = 90
 
 
@@ -35,6 +40,8 @@ def answers_text(questions: Sequence[Question], name: str) -> str:
         name: of the program, for the first line.
     """
     lines = [_HEAD.format(name=" ".join(name.split()))]
+    if any(question.meanwhile.startswith(FOUND) for question in questions):
+        lines = [lines[0] + _HEAD_FOUND.format(found=FOUND)]
     several = len({question.span.file for question in questions}) > 1
     for table, about in _TABLES.items():
         mine = [q for q in questions if q.table == table]
