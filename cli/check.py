@@ -11,11 +11,12 @@ from ..core.errors import FlybyError, OptionError
 from ..tasks.check import CheckOptions, check_with, unread
 from ..tasks.files.source_places import place_json
 from ..tasks.pages.file import check_page, write_page
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from ..tasks.setup import setup_of, setup_of_program
 from ..tasks.station.check import StationCheckOptions, station_check_with
 from .output.changed_station import is_station, refuse_given
 from .output.console import fail, print_json, print_rich, print_table, progress
+from .output.told_robot import read_for_robot
 from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def _findings(
     named = source.robot is not None or source.cell is not None
     robot = setup_of(source).robot.name if named else None
     try:
-        read = read_with(program, source)
+        read = read_for_robot(program, source)
     except OptionError:
         raise
     except FlybyError as error:

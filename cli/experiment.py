@@ -11,9 +11,10 @@ import typer
 from ..core.display import counted
 from ..tasks.experiment import ExperimentOptions, experiment_with
 from ..tasks.files.outputs import check_folder, check_outputs, write_in
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from ..tasks.record import RecordOptions, record_with
 from .output.console import print_json, print_rich, print_table, progress, warn
+from .output.told_robot import read_for_robot
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ def record(
     """Write a program that drives the same moves and logs joints with time on the controller."""
     check_folder("--out", out)
     with progress("reading the program"):
-        made = record_with(read_with(program, source), options)
+        made = record_with(read_for_robot(program, source, writes=True), options)
         files = {Path(name): data for name, data in made.files.items()}
         written = write_in("--out", out, files, [program, *source.inputs()], force)
     for path in written:

@@ -11,8 +11,9 @@ import typer
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.free_motion.free_motion import FreeMotionOptions, free_motion_with
 from ..tasks.free_motion.tune import TuneOptions, tune_with
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from .output.console import print_json, print_rich, print_table, progress, warn, warn_of
+from .output.told_robot import read_for_robot
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def tune(
     """
     _check(csv, plot, [program, *source.inputs(), *options.inputs()], force)
     with progress("reading the program") as say:
-        found = tune_with(read_with(program, source), replace(options, report=say))
+        found = tune_with(read_for_robot(program, source), replace(options, report=say))
         written = _write(found, csv, plot)
     if json:
         print_json(

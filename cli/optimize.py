@@ -15,12 +15,13 @@ from ..tasks.files.places import FilePlaces
 from ..tasks.files.source_places import place_json
 from ..tasks.optimize import CHANGE, OptimizeOptions, optimize_with
 from ..tasks.pages.file import check_page
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from ..tasks.setup import setup_of_program, writable_robot
 from .output.changed_station import changed_station, is_station, refuse_given
 from .output.console import print_json, print_table, progress
 from .output.delivery import OtherVendor, deliver
 from .output.solution_report import ChangedMove, changed_rows, solution_json, tell_solution
+from .output.told_robot import read_for_robot
 from .parameters import (
     AsJson,
     CellPlot,
@@ -98,7 +99,7 @@ def optimize(
     check_outputs({"--plot": plot}, places.inputs, force)
     _check_places(out, in_place, options.vias, other)
     with progress("reading the program") as say:
-        read = read_with(program, source)
+        read = read_for_robot(program, source, writes=places.anywhere)
         setup = setup_of_program(read)
         cell = setup.surroundings(read, no_floor=options.no_floor)
         beside = None

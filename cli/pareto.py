@@ -19,9 +19,10 @@ from ..tasks.files.outputs import (
 from ..tasks.files.source_places import note_json
 from ..tasks.pages.file import check_page, write_page
 from ..tasks.pareto import ParetoOptions, pareto_with
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from ..tasks.setup import setup_of_program
 from .output.console import print_json, print_rich, print_table, progress, warn_of
+from .output.told_robot import read_for_robot
 from .parameters import AsJson, Force, Out, PageFile, ProgramFile, with_options
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def pareto(
     check_outputs({"--plot": plot}, inputs, force)
     check_page(report, inputs, force)
     with progress("reading the program") as say:
-        read = read_with(program, source)
+        read = read_for_robot(program, source, writes=out is not None)
         robot = setup_of_program(read).robot
         made = pareto_with(read, replace(options, report=say))
         written = _written(made, out, inputs, force)

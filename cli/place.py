@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import typer
 
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from ..tasks.station.place import PlaceOptions, place_with, station_place_with
 from .output.changed_station import is_station, refuse_given
 from .output.console import print_json, print_rich, print_table, progress, warn_of
+from .output.told_robot import read_for_robot
 from .parameters import AsJson, ProgramFile, with_options
 
 
@@ -30,7 +31,7 @@ def place(
             refuse_given([source], ())
             made = station_place_with(program, replace(options, report=say))
         else:
-            made = place_with(read_with(program, source), replace(options, report=say))
+            made = place_with(read_for_robot(program, source), replace(options, report=say))
     if json:
         print_json(made.as_json())
     else:

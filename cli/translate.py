@@ -17,6 +17,7 @@ from ..tasks.backup.finding import find_backup
 from ..tasks.catalogue import registry
 from ..tasks.files.outputs import check_folder, encoded, write_in
 from ..tasks.files.source_places import note_json, short_place
+from ..tasks.options.guessed_robot import with_robot
 from ..tasks.pages.file import check_page, write_page
 from ..tasks.read import SourceOptions, TextOptions, read_with
 from ..tasks.setup import setup_of_program
@@ -57,6 +58,8 @@ def translate(
     check_page(report, [program], force)
     if old is None and cell is None and find_backup(program, registry()) is None:
         vendor = registry().reader_of(program).name
+        with progress("looking for the robot"):
+            with_robot(program, text.for_robot(None, None), writes=True, option="--from")
         raise OptionError(
             f"which robot is {program} for now? Give --from ('flyby robots {vendor}' lists those "
             f"of {vendor}) or --cell: corners and times are taken from its motion"

@@ -15,8 +15,9 @@ from ..tasks.emulate import EmulateOptions, emulate_with
 from ..tasks.files.outputs import check_outputs, picture_kind, write_all
 from ..tasks.pages.of_results import page_bytes
 from ..tasks.pages.show import open_page, temporary_page
-from ..tasks.read import SourceOptions, read_with
+from ..tasks.read import SourceOptions
 from .output.console import print_json, print_rich, progress, warn, warn_of
+from .output.told_robot import read_for_robot
 from .parameters import AsJson, Force, ProgramFile, with_options
 
 
@@ -36,7 +37,7 @@ def view(
     if source.entry == ALL:
         raise OptionError("--entry all: a page is of one program: name one entry")
     with progress("reading the program") as say:
-        read = read_with(program, source)
+        read = read_for_robot(program, source)
         run = emulate_with(read, replace(options, report=say))
         say("making the page")
         path = temporary_page(page_bytes(run), program.stem)
@@ -58,7 +59,7 @@ def cspace(
     kind = picture_kind(plot, "--plot")
     check_outputs({"--plot": plot}, [program, *source.inputs()], force)
     with progress("reading the program") as say:
-        found = cspace_with(read_with(program, source), replace(options, report=say))
+        found = cspace_with(read_for_robot(program, source), replace(options, report=say))
         say("drawing")
         write_all("--plot", {plot: found.picture(kind)})
     first, second = found.names

@@ -11,9 +11,10 @@ from ..core.door import called, spelt
 from ..core.errors import InputError, OptionError
 from .catalogue import registry
 from .options.entries import value
+from .options.guessed_robot import read_or_guess
 from .options.keywords import by_keywords
 from .options.texts import joint_target
-from .read import SourceOptions, read_with
+from .read import SourceOptions
 from .setup import Setup, setup_of, setup_of_program
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def _load(program: Program | str | Path, options: CompareOptions) -> tuple[Setup
         behind = "Name it behind" if spelt("log") != "log" else "Give log= for"
         raise OptionError(f"which log? {behind} {name}")
     if isinstance(program, str | Path):
-        program = read_with(program, options)
+        program = read_or_guess(program, options)
     setup = setup_of_program(program)
     log = Path(options.log)
     samples = read_samples(log, setup.robot, mapped)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
+from ..core.source.text.files import refuse_no_text
 from .backup.finding import find_backup
 from .backup.opening import read_task, setup_in, task_of, told_of_setup
 from .backup.surrounding import surrounding_note
@@ -201,6 +202,7 @@ def _check_it_is_a_program(source: str | Path) -> None:
         raise InputError(f"{path}: there is no such file or folder")
     if path.is_file():
         registry().readers_of(path)
+        refuse_no_text(path)
 
 
 def from_ready_posture(

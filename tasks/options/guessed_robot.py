@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.door import spelt
-from ...core.errors import EntryError, FlybyError, InputError, Note
+from ...core.door import given, spelt
+from ...core.errors import EntryError, FlybyError, InputError, Note, OptionError
 from ...core.files.reading import read_bytes
 from ...core.program.entry_point import ALL
 from ...core.source.text.files import LARGEST_FILE
@@ -39,12 +39,17 @@ _FOLDERS = 3
 
 
 def with_robot(
-    source: str | Path, options: SourceOptions
+    source: str | Path, options: SourceOptions, *, writes: bool = False, option: str = "robot"
 ) -> tuple[SourceOptions, tuple[Note, ...]]:
     """Options that name a robot where something tells of one, and what is to be said of that.
 
+    Args:
+        writes: whether a program is written, which is right for its own robot alone: then somebody
+            has to say which it is.
+        option: that says it.
+
     Raises:
-        FlybyError: what is named is no program.
+        FlybyError: what is named is no program; it is to be said which robot it is.
     """
     if options.robot is not None or options.cell is not None:
         return options, ()
@@ -54,6 +59,11 @@ def with_robot(
     if found is None:
         return options, ()
     arm, why = found
+    if writes:
+        raise OptionError(
+            f"which robot is {source} for? What is written is right for that one alone: say it, "
+            f"{given(option, arm.name)} if it is this one: {why}"
+        )
     said = (
         f"nobody says which robot it is: {arm.name} is taken: {why}; {spelt('robot')} says another"
     )

@@ -134,7 +134,7 @@ def test_motor_files_that_are_refused(
 @pytest.mark.parametrize(
     ("status", "words", "message"),
     [
-        (2, (), "which robot?"),
+        (2, ("--out", "new"), "which robot is"),
         (2, ("--robot", ROBOT, "--points", "1"), "--points 1: a number from 2 on"),
         (2, ("--robot", ROBOT, "--free", "all"), "--free needs a cell"),
         (2, ("--robot", ROBOT, "--axes", "2,3"), "--axes needs a cell"),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import flyby
-from flyby.core.errors import FlybyError
+from flyby.core.errors import FlybyError, InputError, OptionError
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
@@ -117,3 +117,33 @@ def test_a_program_that_begins_nowhere_is_judged_by_the_routine_that_drives_most
     file.write_text(f"MODULE M\n{routines}ENDMODULE\n", "utf-8")
     robot, said = taken(file)
     assert robot is not None and "can take the 3 places" in said
+
+
+@pytest.mark.parametrize("suffix", ["mod", "src", "script"])
+@pytest.mark.parametrize(("data", "is_"), [(b"", "empty"), (b" \r\n\n", "empty"),
+                                           (b"\x7fELF\0\1", "binary"),
+                                           (bytes(range(1, 256)), "binary")])  # fmt: skip
+def test_a_file_that_is_no_text_is_named_as_that(tmp_path: Path, suffix, data, is_) -> None:
+    file = tmp_path / f"a.{suffix}"
+    file.write_bytes(data)
+    with pytest.raises(InputError, match=f"a.{suffix} is {is_}"):
+        read_or_guess(file, SourceOptions())
+
+
+def test_a_text_in_any_encoding_is_one(tmp_path: Path) -> None:
+    text = rapid(tmp_path, at(600, 0, 600), at(600, 50, 600), head="! Gr\xf6\xdfe").read_text(
+        "utf-8"
+    )
+    for codec in ("utf-8", "utf-8-sig", "cp1252", "utf-16"):
+        (tmp_path / "a.mod").write_bytes(text.encode(codec))
+        assert taken(tmp_path / "a.mod")[0] is not None
+
+
+def test_what_is_written_is_for_the_robot_that_somebody_names(tmp_path: Path) -> None:
+    file = rapid(tmp_path, at(1700, 100, 900), at(1700, 200, 900))
+    robot, _ = taken(file)
+    for option in ("robot", "--from"):
+        with pytest.raises(InputError, match=rf"say it, {option}[= ]{robot} if it is this one"):
+            with_robot(file, SourceOptions(), writes=True, option=option)
+    named = SourceOptions(robot=robot)
+    assert with_robot(file, named, writes=True) == (named, ())

@@ -19,6 +19,12 @@ _WIDE = {"utf-16-le": codecs.BOM_UTF16_LE, "utf-16-be": codecs.BOM_UTF16_BE}
 """Codecs of two bytes a character, by the mark that their files begin with."""
 _SPAN = partial(tuple.__new__, Span)
 """A span of its parts, without the function of its class in between: every node has one."""
+_PACKED = b"\x1f\x8b"
+"""How files packed by gzip begin."""
+_CONTROLS = bytes({*range(32), 127} - set(b"\t\n\f\r\x1a"))
+"""Characters that no editor writes."""
+_MOST_ODD = 0.02
+"""Share of them in a text that is damaged."""
 LARGEST_FILE = 20_000_000
 """Bytes. The largest programs seen have two million; what is larger is no program."""
 MOST_LINES = 500_000
@@ -80,6 +86,22 @@ def read_source(path: Path) -> SourceFile:
         SourceError: its bytes are no text.
     """
     return source_of(read_bytes(path, LARGEST_FILE), str(path))
+
+
+def refuse_no_text(path: Path) -> None:
+    """Refuse a file that is empty, or whose bytes are no text; packed files are not looked into.
+
+    Raises:
+        InputError: it cannot be read, or holds no text.
+    """
+    data = read_bytes(path, LARGEST_FILE)
+    if not data.strip():
+        raise InputError(f"{path} is empty: no program stands in it")
+    if data.startswith((_PACKED, *_WIDE.values())):
+        return
+    odd = len(data) - len(data.translate(None, _CONTROLS))
+    if b"\0" in data or odd > _MOST_ODD * len(data):
+        raise InputError(f"{path} is binary: no text of a program stands in it")
 
 
 def source_of(data: bytes, name: str) -> SourceFile:
