@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import flyby
-from flyby.core.errors import FlybyError, InputError, OptionError
+from flyby.core.errors import FlybyError, InputError
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
