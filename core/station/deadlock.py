@@ -92,7 +92,10 @@ def _reason(
         if never:
             said = f"{head}: {', '.join(never)} never meets at {action.does.label!r}"
             return Reason(name, action, spell.begin, (), said)
-        return Reason(name, action, spell.begin, tuple(lacking), f"{head} for {tail}")
+        last = [_last(other, actions[other], action.does) for other in lacking]
+        return Reason(
+            name, action, spell.begin, tuple(lacking), f"{head} for {tail}{_behind(last)}"
+        )
     assert isinstance(action.does, WaitSignal)
     wanted = list(levels(action.does.condition))
     setters: dict[str, None] = {}
@@ -100,9 +103,38 @@ def _reason(
         for key, on in _sources(station, signal_key(f"{name}.{level.name}"), level.on, set()):
             setters |= dict.fromkeys(_who_will(actions, run, key, on))
     if not setters:
-        said = f"{head}: nobody {_would(wanted)} any more"
+        keys = {
+            source
+            for level in wanted
+            for source in _sources(station, signal_key(f"{name}.{level.name}"), level.on, set())
+        }
+        last = [_last(other, doings, keys) for other, doings in actions.items() if other != name]
+        said = f"{head}: nobody {_would(wanted)} any more{_behind(last)}"
         return Reason(name, action, spell.begin, (), said)
     return Reason(name, action, spell.begin, tuple(setters), f"{head} for {', '.join(setters)}")
+
+
+def _last(robot: str, actions: Sequence[Action], what: Meet | set[tuple[str, bool]]) -> str:
+    """A robot's last meeting of a name, or the last that it does to signals, with its line."""
+    for action in reversed(actions):
+        does = action.does
+        if isinstance(what, Meet):
+            found = isinstance(does, Meet) and does.label == what.label
+        else:
+            found = isinstance(does, SetSignal) and any(
+                (signal_key(f"{robot}.{does.name}"), on) in what
+                for on in {bool(does.value), bool(does.value) != (does.pulse is not None)}
+            )
+        if found:
+            where = "" if action.span is None else f" ({action.span})"
+            return f"{robot} at {action.text}{where}"
+    return ""
+
+
+def _behind(last: Sequence[str]) -> str:
+    """The same of some robots."""
+    known = [said for said in last if said]
+    return f"; the last such: {', '.join(known)}" if known else ""
 
 
 def _would(wanted: Sequence[Level]) -> str:

@@ -67,7 +67,9 @@ def test_what_nobody_sets_any_more_is_said(write: Write) -> None:
         )
     )
     assert made.deadlock is not None and not made.deadlock.cycle
-    assert "nobody sets diOne any more" in str(made.deadlock)
+    said = str(made.deadlock)
+    assert "nobody sets diOne any more; the last such: one at SetDO doOne,1" in said
+    assert "one.mod:7" in said and "two.mod:" in said
 
 
 def test_a_deadlock_that_timing_hides_is_found(write: Write) -> None:
@@ -125,7 +127,9 @@ def test_a_meeting_that_one_task_lacks_is_named(write: Write) -> None:
         )
     )
     assert made.deadlock is not None
-    assert "one waits at WaitSyncTask s1, all" in str(made.deadlock)
+    said = str(made.deadlock)
+    assert "one waits at WaitSyncTask s1, all" in said and "one.mod:9" in said
+    assert "the last such: two at WaitSyncTask s1, all" in said and "two.mod:7" in said
 
 
 def test_time_outs_end_waits_and_are_noted(write: Write) -> None:
