@@ -1,12 +1,11 @@
 """Parts that one robot hands to another: proven in all orders, and never where sampling disagrees.
 
-What happens is followed by itself: who holds the bar when, by the times of the statements on the
-station's clock, with the robots begun at any times; then everything is measured every 5 ms.
+What happens is followed by itself (`flyby.validation.stations.samples`), with the robots begun at
+any times.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,20 +14,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import flyby
-from flyby.core.arrays import FloatArray, IntArray
 from flyby.core.collision.mutual.conflict import ConflictCause
-from flyby.core.collision.mutual.pair_proof import PairProver
-from flyby.core.collision.mutual.robot_motion import RobotMotion
 from flyby.core.errors import InputError
-from flyby.core.handling.arrangement import PlacedPart
-from flyby.core.handling.handling import Handling
-from flyby.core.station.actions import actions_of
 from flyby.core.station.clearances import StationProver
-from flyby.core.station.clock import Schedule, StationClock
 from flyby.core.station.hand_over import check_hand_overs
-from flyby.core.station.station import StationRobot
 from flyby.tasks.results.stations import DrivenStation
-from flyby.tasks.setup import setup_of_program
+from flyby.validation.stations.random_stations import RandomStation
+from flyby.validation.stations.samples import Samples, trials_begun
 
 from .hand_over_scene import hand_over
 
@@ -193,123 +185,6 @@ def test_who_hands_a_part_on_has_it_as_it_was_taken(tmp_path: Path) -> None:
 # Sampled
 
 
-class Sampled:
-    """One station, followed every few milliseconds."""
-
-    def __init__(self, made: DrivenStation) -> None:
-        self.made = made
-        self.left, self.right = made.station.members.values()
-        self.bare = {name: _motion(member, None) for name, member in made.station.members.items()}
-        self.arms = PairProver(self.bare["left"], self.bare["right"])
-        held = {
-            name: _motion(member, _held(member)) for name, member in made.station.members.items()
-        }
-        self.part = {
-            tool: {
-                "left": _of_part(PairProver(held["left"], self.bare["right"], allow(tool))),
-                "right": _of_part(PairProver(self.bare["left"], held["right"], allow(tool, True))),
-            }
-            for tool in (False, True)
-        }
-
-    def least(self, begins: tuple[float, float]) -> float:
-        """m, the least distance of what may not touch; less than nothing where the bar is torn,
-        or falls."""
-        station = self.made.station
-        members = {
-            name: replace(member, begins=begin)
-            for (name, member), begin in zip(station.members.items(), begins, strict=True)
-        }
-        run = StationClock(replace(station, members=members), self.made.actions).run()
-        left, right = (run.schedules[name] for name in ("left", "right"))
-        t = np.arange(0.0, run.duration, 5e-3)
-        rows = [_at(member, s, t) for member, s in ((self.left, left), (self.right, right))]
-        (q, moves), (other, others) = rows
-        least = self.arms.nearest(q, other, (moves, others))[0]
-        took = [_cue(self.left, left, 2), _cue(self.right, right, 3)]
-        gave = _cue(self.left, left, 4)
-        if took[1] > gave + 1e-9:  # nobody holds it
-            return -1.0
-        stands = [
-            t[np.abs(a - _stand(m, k)).max(axis=1) < 2e-3]
-            for m, a, k in ((self.left, q, 4), (self.right, other, 3))
-        ]
-        both = (t > took[1] + 5e-3) & (t < gave - 5e-3)
-        if not all(np.isin(t[both], stand).all() for stand in stands):
-            return -1.0
-        if not np.isin(t[np.argmin(np.abs(t - took[1]))], stands[0]):
-            return -1.0
-        for name, when in (
-            ("left", (t >= took[0]) & (t <= took[1])),
-            ("right", t >= took[1]),
-        ):
-            # A tool touches what it comes to, takes, and draws back from.
-            near = (
-                (others >= 2) & (others <= 3) & np.isin(t, stands[0])
-                if name == "left"
-                else (moves >= 4) & (moves <= 5) & np.isin(t, stands[1])
-            )
-            for tool, which in ((False, when & ~near), (True, when & near)):
-                if which.any():
-                    own = moves[which], others[which]
-                    found = self.part[tool][name].nearest(q[which], other[which], own)
-                    least = min(least, found[0])
-        return least
-
-
-def allow(tool: bool, turned: bool = False) -> list[tuple[str, str]]:
-    return [("tcp", "bar") if turned else ("bar", "tcp")] if tool else []
-
-
-def _of_part(prover: PairProver) -> PairProver:
-    """Only pairs with the part."""
-    names = [prover.names(row) for row in range(len(prover.pairs))]
-    prover.pairs = prover.pairs[["bar" in pair for pair in names]]
-    return prover
-
-
-def _motion(member: StationRobot, handling: Handling | None) -> RobotMotion:
-    cell = member.cell if handling is not None else replace(member.cell, parts=())
-    return RobotMotion(member.name, member.controller, member.run, cell, (), handling)
-
-
-def _held(member: StationRobot) -> Handling:
-    """The bar in the hand all along."""
-    assert member.handling is not None
-    held: list[PlacedPart] = [
-        placed
-        for arrangement in member.handling.arrangements
-        for placed in arrangement
-        if placed.held
-    ]
-    count = len(member.handling.arrangements)
-    return replace(member.handling, arrangements=((held[0],),) * count)
-
-
-def _at(member: StationRobot, schedule: Schedule, t: FloatArray) -> tuple[FloatArray, IntArray]:
-    trajectory, own = member.run.trajectory, schedule.own(t)
-    row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
-    q = np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
-    return q, trajectory.move[row]
-
-
-def _stand(member: StationRobot, move: int) -> FloatArray:
-    route = member.run.path.route
-    return route.ends.q[list(route.moves).index(move), 1]
-
-
-def _cue(member: StationRobot, schedule: Schedule, move: int) -> float:
-    """s of the station at which the output of the gripper is set behind a move."""
-    words = setup_of_program(member.program).vendor.speaks.signals
-    (action,) = [a for a in actions_of(member.run, words) if a.move == move and "out(0" in a.text]
-    waited = sum(
-        spell.end - spell.begin
-        for spell in schedule.waits
-        if spell.action.statement < action.statement
-    )
-    return action.time + schedule.begin + waited
-
-
 @settings(max_examples=6, deadline=None)
 @given(
     without=st.sets(st.sampled_from(["brought", "held", "away"]), max_size=1),
@@ -342,4 +217,6 @@ def test_what_is_proven_no_sampling_refutes(
         return
     (pair,) = made.clearances
     if pair.interlocked is not None and pair.interlocked.proven:
-        assert Sampled(made).least(begins) >= CLEARANCE - 2e-5
+        samples = Samples(RandomStation(file, ("ur", "ur"), (2, 4, 3)), made)
+        for trial in trials_begun(made, begins):
+            assert samples.least(trial) >= CLEARANCE - 2e-5

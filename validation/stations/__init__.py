@@ -1,0 +1,1 @@
+"""Random stations of two robots, and what dense samples find there."""
