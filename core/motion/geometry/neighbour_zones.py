@@ -30,7 +30,11 @@ class NeighbourWays:
 
     def __init__(self, segments: Segments, chains: Sequence[Chain], share: float) -> None:
         self._segments, self._chains, self._share = segments, chains, share
+        # Plain numbers: asked for one by one.
+        self._kinds: list[int] = segments.ends.kind.tolist()
+        self._lengths: list[float] = segments.length.tolist()
         self._lines: dict[int, tuple[FloatArray, FloatArray]] = {}
+        self._known: dict[tuple[int, int], Reach | None] = {}
 
     def way(self, segment: int, corner: int) -> Reach | None:
         """Along a segment, from the corner between segments ``corner`` and ``corner + 1``.
@@ -38,13 +42,18 @@ class NeighbourWays:
         Returns:
             None where the TCP stands still, so that no distance says how far.
         """
+        key = segment, corner
+        if key not in self._known:
+            self._known[key] = self._made(segment, corner)
+        return self._known[key]
+
+    def _made(self, segment: int, corner: int) -> Reach | None:
         segments, share = self._segments, self._share
-        kind = segments.ends.kind[segment]
+        kind, length = self._kinds[segment], self._lengths[segment]
         if kind == JOINT_SEGMENT:
             return self._on_joint_line(segment, corner)
-        if segments.length[segment] < STILL:
+        if length < STILL:
             return None
-        length = float(segments.length[segment])
         if kind != ARC_SEGMENT:
             return Reach(share * length, (("length", segment, share),))
         swept = float(segments.angle[segment])

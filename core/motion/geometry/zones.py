@@ -65,8 +65,7 @@ class ZonePlanner:
         self._notes: list[Note] = []
         self._kept: dict[int, Reach] = {}
         self._wanted: tuple[Sequence[Zone], list[Reaches]] = (), []
-        self._halfway = NeighbourWays(self._segments, chains, model.neighbour_fraction)
-        self._known_halves: dict[tuple[int, int], Reach | None] = {}
+        self._known_ways: dict[float, NeighbourWays] = {}
 
     def corners(self, zones: Sequence[Zone]) -> Corners:
         """The corners at the inner waypoints.
@@ -158,9 +157,15 @@ class ZonePlanner:
         Returns:
             None where the TCP stands still on both sides, so that a radius says nothing.
         """
-        neighbours = NeighbourWays(self._segments, self._chains, min(most, self._furthest))
+        neighbours = self._neighbours(min(most, self._furthest))
         ways = [neighbours.way(segment, i) for segment in (i, i + 1)]
         return min((way.value for way in ways if way is not None), default=None)
+
+    def _neighbours(self, share: float) -> NeighbourWays:
+        """What lies up to a share of the way to the neighbouring points."""
+        if share not in self._known_ways:
+            self._known_ways[share] = NeighbourWays(self._segments, self._chains, share)
+        return self._known_ways[share]
 
     def _halves(self, i: int, zone: Zone) -> list[Room]:
         """Half way to each neighbour, less the radius (m)."""
@@ -363,10 +368,7 @@ class ZonePlanner:
         return found[0], found[1]
 
     def _half(self, segment: int, corner: int) -> Reach | None:
-        key = segment, corner
-        if key not in self._known_halves:
-            self._known_halves[key] = self._halfway.way(segment, corner)
-        return self._known_halves[key]
+        return self._neighbours(self._model.neighbour_fraction).way(segment, corner)
 
     def _exit(self, segment: int, corner: int, size: Reach, angle: float) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
