@@ -25,8 +25,8 @@ from .options import Effort, WaypointTask
 
 FINE_BOX = 0.2
 """First trust box of a refinement."""
-FINE_ITERATIONS = 25
-"""Of a refinement."""
+FINE_ITERATIONS = 40
+"""Of a refinement, at most: one that has not come to its end and may win goes on."""
 _AGAIN_ITERATIONS, _AGAIN_BOX = 10, 0.05
 """Of a refinement with a wider margin, which begins near its end."""
 FEASIBLE = 1e-4

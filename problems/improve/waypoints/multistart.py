@@ -27,7 +27,7 @@ ROUNDS = ((14, 0.5), (10, 1.0), (10, 1.0), (10, 1.0))
 """Iterations of a round, and the share of its searches that go on after it if they may win."""
 _NEAR_ROUNDS = ((14, 1.0),)
 """The same of variations,"""
-_FINE_ROUNDS = ((10, 1.0),)
+_FINE_ROUNDS = ((10, 1.0), (15, 1.0))
 """and of refinements."""
 _LEAST = 3
 """Searches of a block that go on at least if they may win."""
