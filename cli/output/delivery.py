@@ -58,7 +58,7 @@ class Delivery:
         return replace(self, written=[*self.written, plot])
 
     def end(self, told: bool) -> None:
-        """Say that nothing was written, if nothing was to be, and give the exit status.
+        """Say that nothing was written, if nothing was, and give the exit status.
 
         Args:
             told: whether words are wanted, not JSON alone.
@@ -70,6 +70,8 @@ class Delivery:
         made = self.made
         if told and made.changed and not self.places.anywhere:
             print_rich("nothing was written: --in-place or --out FOLDER writes the new program")
+        if told and not made.changed and self.places.anywhere:
+            print_rich("nothing was written: the program stays as it is")
         if self.places.in_place:
             refuse_not_executed(not_executed_notes(made.original, made.program, self.setup.vendor))
         if not made.proven:
