@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...tasks.files.source_places import note_json, short_place
-from ...tasks.results.lines import in_lines
 from .console import print_rich, print_table, warn, warn_of
 
 if TYPE_CHECKING:
@@ -84,6 +83,8 @@ def changed_rows(
         moves: that changed.
         gained: s at the waypoint of each move of the program, changed or not.
     """
+    from ...tasks.results.lines import in_lines
+
     for alike in in_lines(moves, lambda one: (one.span, one.said)):
         place = short_place(program, alike[0].span)
         gains = [gained[one.move] for one in alike if one.move in gained]

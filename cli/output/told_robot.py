@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...tasks.options.guessed_robot import with_robot
 from ...tasks.read import SourceOptions, read_with
 from .console import warn_of
 
@@ -19,6 +18,8 @@ def read_for_robot(program: Path, source: SourceOptions, *, writes: bool = False
     Args:
         writes: whether a program is written; then somebody has to say which robot it is.
     """
+    from ...tasks.options.guessed_robot import with_robot
+
     source, notes = with_robot(program, source, writes=writes)
     warn_of(notes)
     return read_with(program, source)

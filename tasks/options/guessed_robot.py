@@ -16,7 +16,7 @@ from ...core.door import given, spelt
 from ...core.errors import EntryError, FlybyError, InputError, Note, OptionError
 from ...core.files.reading import read_bytes
 from ...core.program.entry_point import ALL
-from ...core.source.text.files import LARGEST_FILE
+from ...core.source.text.files import LARGEST_FILE, refuse_no_text
 from ..catalogue import registry
 from ..fitting import said_to_fit
 from ..read import SourceOptions, backup_in, read_undriven, read_with, surrounding
@@ -94,6 +94,8 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
         vendor = registry().reader_of(path)
     except FlybyError:
         return None  # what reads it says why
+    if path.is_file():
+        refuse_no_text(path)
     try:
         program, options = _undriven(source, options)
     except FlybyError:

@@ -110,7 +110,6 @@ def test_what_is_wrong_by_itself_ends_with_status_2(flyby: Flyby) -> None:
     robot = "--robot", ROBOT
     square = str(SQUARE)
     for words in (
-        ("zones", square),
         ("emulate", square, *robot, "--opaque", "keep"),
         ("emulate", square, *robot, "--period", "-1"),
         ("emulate", square, *robot, "--plot", "a.txt"),

@@ -248,7 +248,7 @@ def test_a_krl_program_becomes_one_of_tp_and_is_driven_alike() -> None:
     sources = FANUC.write(made.program, other, {"opaque": "comment"})
     check_driven(made, sources, FANUC, other)
     (listing,) = sources.values()
-    assert "L P[5] 300mm/sec FINE ;" in listing and "!$OUT[4]=TRUE ;" in listing
+    assert "L P[5] 300mm/sec FINE ACC17 ;" in listing and "!$OUT[4]=TRUE ;" in listing
     times = (
         Controller(kuka, robot).run(program).duration,
         Controller(FANUC, other).run(made.program).duration,
