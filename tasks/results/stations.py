@@ -53,6 +53,8 @@ SAVINGS = (
 )
 _SHORTEST = 1e-3
 """s of a wait that is shown."""
+_ONE_TIME = 0.1
+"""s between two times that are told as one: what is known of when robots move."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -162,13 +164,19 @@ class DrivenStation:
         ]
 
     def conflict_said(self, pair: PairClearance, conflict: Conflict) -> str:
-        """A conflict in a sentence, with both program lines."""
-        when = []
-        for name, own in zip(pair.robots, conflict.times, strict=True):
-            clocked = self.run.schedules[name].clocked(np.array([[own, own]]))[0, 0]
-            when.append(f"{name} at {clocked:.3f} s")
+        """A conflict in a sentence, with both program lines, and when: at one time of the station,
+        unless it takes that one of them is late."""
+        spans = [
+            self.run.schedules[name].clocked(np.array([[own, own]]))[0]
+            for name, own in zip(pair.robots, conflict.times, strict=True)
+        ]
+        begin, end = max(span[0] for span in spans), min(span[1] for span in spans)
+        when = f"at {begin:.2f} s"
+        if begin > end + _ONE_TIME:
+            both = zip(pair.robots, spans, strict=True)
+            when = ", ".join(f"{name} at {span[0]:.3f} s" for name, span in both)
         said = conflict_said(self.station, pair.robots, conflict)
-        return f"{said} ({', '.join(when)} of the station)"
+        return f"{said} ({when} of the station)"
 
     def saving_rows(self) -> list[tuple[str, ...]]:
         """A line a change of an interlock."""

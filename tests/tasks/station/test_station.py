@@ -199,6 +199,7 @@ def test_robots_that_share_space_are_named_with_both_lines(write: Write) -> None
     assert not made.clear
     (finding,) = [f for f in made.findings() if "one's move" in f][:1]
     assert "one.mod:" in finding and "two.mod:" in finding
+    assert "(at " in finding and finding.endswith(" s of the station)")
     (pair,) = made.clearances
     assert pair.least < 0.0
     overlap = f"one and two overlap by {-1e3 * pair.least:.1f} mm at {pair.least_at:.3f} s"
