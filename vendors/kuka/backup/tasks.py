@@ -21,7 +21,7 @@ _CONTROLLERS_OWN = frozenset({"system", "tp"})
 """Folders whose routines the operator does not choose."""
 _CELL = "cell"
 _COPY = re.compile(r"copy|copia|kopie|backup|\bold\b|_old|\balt\b|_alt|bak\b|\(\d\)", re.IGNORECASE)
-_SWITCH = re.compile(r"^[ \t]*SWITCH[ \t]*\(?[ \t]*PGNO\b", re.IGNORECASE | re.MULTILINE)
+_SWITCH = re.compile(r"^[ \t]*SWITCH\b[ \t(]*(\w*)", re.IGNORECASE | re.MULTILINE)
 _END = re.compile(r"^[ \t]*(?:DEFAULT|ENDSWITCH)\b", re.IGNORECASE | re.MULTILINE)
 _CASE = re.compile(r"^[ \t]*CASE[ \t]+([^\r\n;]+)", re.IGNORECASE | re.MULTILINE)
 _CALL = re.compile(r"^[ \t]*([A-Z_][\w$]*)[ \t]*\(", re.IGNORECASE | re.MULTILINE)
@@ -147,18 +147,25 @@ def _cell(routines: Routines) -> Routine | None:
 
 
 def _numbers(source: SourceFile, routines: Routines) -> dict[str, str]:
-    """Which program numbers ``cell.src`` runs a routine for, of those that are at hand."""
+    """Which program numbers ``cell.src`` runs a routine for, of those that are at hand.
+
+    The number is ``PGNO`` as delivered; where no ``SWITCH`` asks for that, it is what an
+    integrator has put in its place, and any ``SWITCH`` between numbers counts.
+    """
     text = _COMMENT.sub("", source.text)
     found: dict[str, list[str]] = {}
-    switches = list(_SWITCH.finditer(text))
+    every = list(_SWITCH.finditer(text))
+    switches = [one for one in every if one[1].upper() == "PGNO"] or every
     behind = [*(switch.start() for switch in switches[1:]), len(text)]
-    for switch, most in zip(switches, behind, strict=True):
+    for switch, most in zip(switches, behind, strict=False):
         end = _END.search(text, switch.end(), most)
         part = text[switch.end() : end.start() if end else most]
         cases = list(_CASE.finditer(part))
         stops = [*(case.start() for case in cases[1:]), len(part)]
         for case, stop in zip(cases, stops, strict=False):
             number = " ".join(case[1].split())
+            if number.startswith(("#", '"')):
+                continue  # a state, and no number
             for name in _CALL.findall(part[case.end() : stop]):
                 routine = routines.named(name)
                 if routine is not None and routines.moves_robot(routine):

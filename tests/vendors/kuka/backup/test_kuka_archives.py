@@ -116,6 +116,41 @@ def test_a_cell_that_calls_nothing_is_the_operators_choice(tmp_path) -> None:
     assert [one.name for one in main.entries] == ["PICK", "PLACE", "APPROACH"]
 
 
+def cell_of(folder: Path, old: str, new: str) -> list[tuple[str, str]]:
+    files = archive()
+    cell = files["KRC/R1/cell.src"]
+    assert isinstance(cell, str) and old in cell
+    files["KRC/R1/cell.src"] = cell.replace(old, new)
+    return [(one.name, one.comment) for one in opened(folder, files).tasks[0].entries]
+
+
+def test_an_integrator_asks_for_another_number(tmp_path) -> None:
+    assert cell_of(tmp_path, "SWITCH  PGNO", "SWITCH(JOB_OF_PLC)") == [
+        ("CELL", "chooses by program number"),
+        ("PICK", "program number 1"),
+        ("PLACE", "program number 2,3"),
+        ("APPROACH", ""),
+    ]
+
+
+def test_where_the_program_number_is_asked_for_no_other_counts(tmp_path) -> None:
+    shift = "SWITCH SHIFT\n    CASE 9\n      PICK ( )\n    ENDSWITCH\n    SWITCH  PGNO"
+    assert ("PICK", "program number 1") in cell_of(tmp_path, "SWITCH  PGNO", shift)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("    SWITCH  PGNO ; Select with Programnumber\n    CASE 1\n", "    IF PGNO==1 THEN\n"),
+        ("CASE 1\n", "CASE #MORNING\n"),
+    ],
+)
+def test_a_cell_may_choose_otherwise(tmp_path, old: str, new: str) -> None:
+    names = dict(cell_of(tmp_path, old, new))
+    assert names["PICK"] == ""
+    assert "PLACE" in names
+
+
 @pytest.mark.parametrize("entry", ["PICK", "PLACE", "CELL"])
 @pytest.mark.parametrize("made", [archive, kr_c2])
 def test_entries_are_read_across_folders_and_driven(tmp_path, entry: str, made) -> None:
