@@ -10,7 +10,7 @@ from ..program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from ..robot.catalogue_text import pose_entries
 from ..robot.joint import ExternalAxis, JointKind
 from ..robot.model import Robot
-from ..spatial.pose import IDENTITY
+from ..spatial.pose import IDENTITY, Pose
 from .file import AXES
 
 _UNITS = {JointKind.REVOLUTE: "rad", JointKind.PRISMATIC: "m"}
@@ -63,12 +63,13 @@ def _tool(tool: Tool) -> dict[str, Any]:
 
 
 def _load(load: Load) -> dict[str, Any]:
-    """Principal moments alone: where their axes are turned, they are those of the file's axes."""
     entries: dict[str, Any] = {"mass_kg": load.mass}
     if any(load.centre):
         entries["centre_m"] = list(load.centre)
     if any(load.inertia):
         entries["inertia_kgm2"] = list(load.inertia)
+        axes = Pose(quaternion=load.axes)
+        entries |= {"inertia_axes": pose_entries(axes)} if axes != IDENTITY else {}
     return entries
 
 

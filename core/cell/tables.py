@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..files.mesh_file import MESH_UNITS
 from ..files.tables import LENGTH, TomlTable
 from ..program.tool import Load
-from ..robot.pose_table import read_vector
+from ..robot.pose_table import pose_at, read_vector
 from ..robot.shape import Box, Capsule, Cylinder, Shape, Sphere
 from ..spatial.pose import Pose
 from .geometry import Geometry, Mesh
@@ -23,18 +23,24 @@ SHAPES: dict[str, tuple[int, Callable[[tuple[float, ...]], Shape]]] = {
 
 
 def read_load(table: TomlTable) -> Load | None:
-    """A load: ``mass_kg``, ``centre_mm``, ``inertia_kgm2`` (principal moments)."""
+    """A load: ``mass_kg``, ``centre_mm``, ``inertia_kgm2`` (principal moments) about
+    ``inertia_axes``.
+    """
     if not table.has("mass_kg"):
-        for key in ("centre_mm", "centre_m", "inertia_kgm2"):
+        for key in ("centre_mm", "centre_m", "inertia_kgm2", "inertia_axes"):
             if table.has(key):
                 raise table.error(key, "means nothing without mass_kg")
         return None
     inertia = table.numbers("inertia_kgm2", 3) if table.has("inertia_kgm2") else (0.0, 0.0, 0.0)
+    axes = pose_at(table, "inertia_axes")
+    if any(axes.position):
+        raise table.error("inertia_axes", "has an orientation alone; where they meet is 'centre'")
     try:
         return Load(
             table.number("mass_kg"),
             read_vector(table, "centre", (0.0, 0.0, 0.0)),
             (inertia[0], inertia[1], inertia[2]),
+            axes.quaternion,
         )
     except InputError as error:
         raise table.error("mass_kg", str(error)) from None

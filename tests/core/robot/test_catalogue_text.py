@@ -11,9 +11,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from flyby.core.arrays import FloatArray
 from flyby.core.cell.cell_text import cell_text
 from flyby.core.cell.file import load_cell
-from flyby.core.program.tool import Tool, WorkObject
+from flyby.core.errors import InputError
+from flyby.core.program.tool import Load, Tool, WorkObject
 from flyby.core.registry import find_robot, installed
 from flyby.core.robot.catalogue import load_robot
 from flyby.core.robot.catalogue_text import robot_text
@@ -107,9 +109,37 @@ def test_cells_come_back(
     for name, tool in held.items():
         assert near(cell.tools[name].tcp, tool.tcp)
         assert cell.tools[name].robot_held == tool.robot_held
-        assert (cell.tools[name].load is None) == (tool.load is None)
+        same_load(cell.tools[name].load, tool.load)
     for name, frame in frames.items():
         assert near(cell.frames[name].user @ cell.frames[name].frame, frame.user @ frame.frame)
+
+
+def same_load(one: Load | None, other: Load | None) -> None:
+    assert (one is None) == (other is None)
+    if one is not None and other is not None:
+        assert one.mass == pytest.approx(other.mass)
+        assert one.centre == pytest.approx(other.centre)
+        np.testing.assert_allclose(tensor(one), tensor(other), atol=1e-9)
+
+
+def tensor(load: Load) -> FloatArray:
+    axes = Pose(quaternion=load.axes).matrix()[:3, :3]
+    return axes @ np.diag(load.inertia) @ axes.T
+
+
+def test_principal_axes_of_a_load_that_are_turned_come_back(tmp_path: Path) -> None:
+    half = math.sqrt(0.5)
+    load = Load(157.0, (-0.22, 0.01, 0.3), (5.25, 20.95, 23.19), (half, 0.0, 0.0, -half))
+    path = tmp_path / "cell.toml"
+    robot = find_robot("ur/ur5e")
+    path.write_text(cell_text(robot, robot.name, {"g": Tool("g", load=load)}, {}), "utf-8")
+    again = load_cell(path, installed()).tools["g"].load
+    same_load(again, load)
+    assert again is not None and tensor(again)[0, 0] == pytest.approx(20.95)
+    moved = path.read_text("utf-8").replace("{ quat", "{ xyz_m = [0, 0, 1], quat")
+    path.write_text(moved, "utf-8")
+    with pytest.raises(InputError, match="inertia_axes: has an orientation alone"):
+        load_cell(path, installed())
 
 
 def test_a_robot_that_says_nothing_of_its_origins_is_written_all_the_same(tmp_path: Path) -> None:
