@@ -30,13 +30,15 @@ class StationFiles:
 def station_files(backup: Backup) -> StationFiles:
     """Cell, robot, motion and answers of every robot that a backup moves.
 
+    A backup without programs has those of its robots, and no answers.
+
     Of one robot they are ``cell.toml``, ``robot.toml``, ``motion.toml`` and ``answers.toml``; of
     several each is named after its task as well. The cell names the other files; what stands around
     the robot no backup says, and it has to be added.
     """
     files: dict[str, bytes] = {}
     notes: list[Note] = []
-    moving = [task for task in backup.tasks if task.robot is not None]
+    moving = [task for task in backup.tasks if task.robot is not None] or _without_programs(backup)
     for task in moving:
         suffix = f"_{_in_file_names(task.name)}" if len(moving) > 1 else ""
         known = backup.robots[task.robot] if task.robot is not None else None
@@ -47,11 +49,20 @@ def station_files(backup: Backup) -> StationFiles:
             files |= _cell(backup, known.robot, suffix)
         except FlybyError as error:
             notes.append(Note(f"no cell is written of {task.name}: {error}"))
+        if not task.files:
+            continue
         try:
             files[f"answers{suffix}.toml"] = _answers(backup, task)
         except FlybyError as error:
             notes.append(Note(f"no answers are asked for {task.name}: {error}"))
     return StationFiles(files, tuple(notes))
+
+
+def _without_programs(backup: Backup) -> list[Task]:
+    """A task of each robot, with nothing to run."""
+    from ...core.backup.backup import Task
+
+    return [Task(robot.unit, number, (), None) for number, robot in enumerate(backup.robots)]
 
 
 def _in_file_names(task: str) -> str:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from typer.testing import Result
+
+from flyby.core.cell.file import load_cell
+from flyby.core.registry import installed
 
 from ..vendors.abb.backup.station import Station, multimove, one_robot
 
@@ -65,6 +69,19 @@ def test_of_several_robots_each_has_files_of_its_own(flyby: Flyby, tmp_path: Pat
     assert result.exit_code == 0, result.output
     names = {path.name for path in (tmp_path / "made").iterdir()}
     assert {"cell_t_rob1.toml", "cell_t_rob2.toml", "robot_t_rob1.toml"} <= names
+
+
+def test_of_a_backup_without_programs_the_arm_is_written(flyby: Flyby, tmp_path: Path) -> None:
+    shutil.copytree(Path(__file__).parents[2] / "examples/kuka_archive", tmp_path / "bare")
+    for path in (tmp_path / "bare").rglob("*"):
+        if path.suffix.lower() in (".src", ".sub"):
+            path.unlink()
+    result = flyby("import", tmp_path / "bare", "--out", tmp_path / "made")
+    assert result.exit_code == 0, result.output
+    assert "no programs are in it" in result.output
+    made = {path.name for path in (tmp_path / "made").iterdir()}
+    assert made == {"cell.toml", "robot.toml", "motion.toml"}
+    load_cell(tmp_path / "made/cell.toml", installed())
 
 
 @pytest.mark.parametrize(
