@@ -109,7 +109,7 @@ def test_an_index_beyond_an_array_is_an_error_only_where_the_course_is_certain()
     ("call", "value"),
     [("RunMode()", "RUN_CONT_CYCLE"), ("OpMode()", "OP_AUTO"), ("GetTaskName()", '"T_ROB1"'),
      ("ExecHandler()", "HANDLER_NONE"), ("ExecLevel()", "LEVEL_NORMAL"), ("RobOS()", "TRUE"),
-     ("IsStopMoveAct(\\FromMoveTask)", "FALSE"), ("MaxRobSpeed()", "10000"),
+     ("IsStopMoveAct(\\FromMoveTask)", "FALSE"),
      ('ModExist("m")', "TRUE"), ('ModExist("x")', "FALSE")],
 )  # fmt: skip
 def test_how_the_program_runs_is_known(call, value):
@@ -120,6 +120,25 @@ def test_how_the_program_runs_can_be_answered():
     assert heights(
         "IF RunMode()=RUN_CONT_CYCLE at 1;\nat 2;", answers=Answers({"runmode()": 0.0})
     ) == [2]
+
+
+SHARES = """MODULE shares
+  VAR speeddata slow:=[100,500,5000,1000];
+  PROC main()
+    slow.v_tcp:=MaxRobSpeed()/100*30;
+    MoveL [[500,0,600],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],slow,fine,tool0;
+  ENDPROC
+ENDMODULE
+"""
+
+
+@pytest.mark.parametrize(("answers", "speed"), [({}, 3.0), ({"maxrobspeed()": 6200.0}, 1.86)])
+def test_how_fast_the_arm_can_be_is_asked_for(answers, speed) -> None:
+    program = read(SHARES, "shares.mod", ReadOptions(answers=Answers(answers)))
+    assert program.moves[0].speed.tcp == pytest.approx(speed)
+    assert any("MaxRobSpeed()" in str(one) for one in program.questions)
+    said = [note for note in program.notes if "speed of MoveL depends on" in str(note)]
+    assert bool(said) == (not answers)
 
 
 def test_the_name_of_an_argument():

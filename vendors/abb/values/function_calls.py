@@ -17,7 +17,7 @@ from .arguments import check_count
 from .data import Globals
 from .defaults import carried, default_of, nominal
 from .elements import array_mismatch
-from .functions import COMPUTED, IN_PRODUCTION, STATE, euler_zyx
+from .functions import COMPUTED, IN_PRODUCTION, OF_THE_ARM, STATE, euler_zyx
 from .located import Located
 from .operators import OperandError, is_vector
 from .outputs import READING
@@ -113,6 +113,13 @@ def _value(
         if call.name in IN_PRODUCTION:
             answer = evaluator.answers.ask(call.span, None)
             return IN_PRODUCTION[call.name] if answer is None else answer
+        if call.name in OF_THE_ARM:
+            return Unknown(
+                f"what {call.text}() is of this arm",
+                call.span,
+                evaluator.answers.key(call.span),
+                OF_THE_ARM[call.name],
+            )
         if call.name in STATE:
             return Unknown(
                 f"the value of {call.text}()",

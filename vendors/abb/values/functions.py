@@ -248,6 +248,10 @@ STATE: dict[str, Type | None] = {
 """Functions that ask the controller, the operator or the outside world, with the type of their
 values, None where nothing is known of it. They move nothing."""
 
+OF_THE_ARM: dict[str, float] = {"maxrobspeed": VMAX[0]}
+"""Functions whose value differs from arm to arm, with what stands in for it: no arm goes faster.
+Shares of it are too fast then, so that it is asked for."""
+
 _RUN_CONT_CYCLE, _OP_AUTO = 1.0, 1.0
 
 IN_PRODUCTION: dict[str, Value] = {
@@ -255,7 +259,6 @@ IN_PRODUCTION: dict[str, Value] = {
     "opmode": _OP_AUTO,
     "gettaskname": "T_ROB1",
     "robname": "ROB_1",
-    "maxrobspeed": VMAX[0],
     "motionplannerno": 1.0,
     **dict.fromkeys(words("nonmotionmode eventtype execlevel exechandler pathlevel"), 0.0),
     **dict.fromkeys(words("robos taskrunmec taskrunrob taskisactive taskisexecuting"), True),
