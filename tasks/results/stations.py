@@ -54,7 +54,7 @@ SAVINGS = (
 _SHORTEST = 1e-3
 """s of a wait that is shown."""
 _ONE_TIME = 0.1
-"""s between two times that are told as one: what is known of when robots move."""
+"""s between two times that count as one: what is known of when robots move."""
 
 
 @dataclass(frozen=True, repr=False)
