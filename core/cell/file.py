@@ -18,6 +18,7 @@ from ..spatial.pose import Vector3
 from .arm import read_arm
 from .cell import Cell, Obstacle
 from .geometry import Geometry
+from .positioner import positioner
 from .tables import read_geometry, read_load
 from .workpiece import Workpiece, read_part
 
@@ -71,6 +72,8 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
 
 
 def _robot(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) -> Robot:
+    if not file.has("robot") and axes:
+        return _positioner(file, registry, axes)
     named = file.text("robot")
     try:
         if names_file(named):
@@ -88,6 +91,20 @@ def _robot(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) 
         return robot.with_external_axes(axes) if axes else robot
     except InputError as error:
         raise file.error("external_axis", str(error)) from None
+
+
+def _positioner(file: TomlTable, registry: Registry, axes: tuple[ExternalAxis, ...]) -> Robot:
+    """External axes without an arm, which a program of their own turns."""
+    if not file.has("vendor"):
+        raise file.error(
+            "robot", "is missing; of a positioner without an arm give the vendor instead"
+        )
+    vendor = file.text("vendor")
+    try:
+        registry.find_vendor(vendor)
+        return positioner(vendor, axes)
+    except InputError as error:
+        raise file.error("vendor", str(error)) from None
 
 
 def _tools(file: TomlTable) -> tuple[dict[str, Tool], dict[str, Geometry]]:

@@ -199,6 +199,7 @@ def _margin(subject: RunSubject) -> Iterator[Hit]:
     room = np.array(
         [_MARGIN_LENGTH if j.kind is JointKind.PRISMATIC else _MARGIN_ANGLE for j in joints]
     )
+    room[[joint.held for joint in joints]] = -np.inf
     limits, moves = robot.limits, path.sample_moves()
     near = np.minimum(path.q - limits.lower, limits.upper - path.q)
     told: tuple[int, int] | None = None

@@ -132,6 +132,11 @@ class Robot:
         """Whether the arm has no motor for some of its joints."""
         return any(joint.held for joint in self.joints)
 
+    @property
+    def has_arm(self) -> bool:
+        """Whether it has motors beside its external axes, which are all that a positioner has."""
+        return not all(joint.held for joint in self.joints)
+
     def __repr__(self) -> str:
         carries = "payload not known" if self.payload is None else f"payload {self.payload:g} kg"
         axes = counted(self.external_axes, "external axis", "external axes")

@@ -17,6 +17,7 @@ from ..motion.emulator.run import Run
 from ..motion.geometry.pieces import WAYPOINT
 from ..program.event import Event, EventAnchor
 from ..program.move import Move, Opaque, Wait
+from ..program.program import Program
 from ..program.signal import Meet, SetSignal, SignalAction
 
 
@@ -46,6 +47,47 @@ class Action:
     def soonest(self) -> float:
         """s, before which it is not done."""
         return self.time if self.earliest is None else self.earliest
+
+
+class MeetingPoint(NamedTuple):
+    """A statement at which a program waits for others.
+
+    Args:
+        does: which they are.
+        move: index of the move before; -1 before the first.
+        text: as it stands in the source.
+        span: where.
+    """
+
+    does: Meet
+    move: int
+    text: str
+    span: Span | None
+
+    @property
+    def said(self) -> str:
+        """The statement with its line."""
+        return self.text if self.span is None else f"{self.text} ({self.span})"
+
+
+def meetings_of(program: Program, words: SignalWords | None) -> tuple[MeetingPoint, ...]:
+    """Where a program waits for others, in its order.
+
+    Args:
+        program: driven or not.
+        words: how its language says so; None if nobody knows, and nothing is found.
+    """
+    found: list[MeetingPoint] = []
+    move = -1
+    for statement in () if words is None else program.statements:
+        if isinstance(statement, Move):
+            move += 1
+        elif isinstance(statement, Opaque):
+            assert words is not None
+            does = words.meets(statement.text)
+            if does is not None:
+                found.append(MeetingPoint(does, move, _in_a_line(statement.text), statement.span))
+    return tuple(found)
 
 
 def actions_of(run: Run, words: SignalWords | None) -> tuple[Action, ...]:

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import FloatArray, IntArray
+from ..collision.mutual.carried_work import CarriedWork
 from ..collision.mutual.conflict import PairVerdict
 from ..collision.mutual.handed_part import HandedPart
 from ..collision.mutual.meetings import InTurn, Meetings
 from ..collision.mutual.pair_proof import PairProver
 from ..collision.mutual.robot_motion import RobotMotion
 from .actions import Action
+from .carried_proof import carried_work
 from .clock import Schedule, StationRun
 from .hand_over import HandOvers, follow_hand_overs
 from .orders import Orders, sections_mask
@@ -138,7 +140,19 @@ class StationProver:
         )
         hand_overs = self._hand_overs
         handed, awaited = hand_overs.between(one, other), hand_overs.awaited(one, other)
-        return PairProver(first, second, allowed, handed, awaited)
+        carried = list(self._carried(one, other, allowed))
+        return PairProver(first, second, allowed, handed, awaited, carried)
+
+    def _carried(
+        self, one: str, other: str, allowed: Sequence[tuple[str, str]]
+    ) -> Iterator[CarriedWork]:
+        """Moves of one of two robots on what the other one turns, and what is proven of them."""
+        for worker, (own, its) in enumerate(((one, other), (other, one))):
+            member, carrier = (self._station.members[name] for name in (own, its))
+            turned = [pair[::-1] for pair in allowed] if worker else allowed
+            handling = self._hand_overs.handling(member)
+            for work in carried_work(member, carrier, handling, self._station.clearance, turned):
+                yield replace(work, worker=worker)
 
     def _variants(self, one: str, other: str) -> Iterator[tuple[PairProver, tuple[bool, bool]]]:
         """Provers of two robots, and which of them passes through zones that waits stand behind."""
@@ -295,6 +309,10 @@ class StationProver:
             if found < least:
                 least, at = found, float(t[k])
             first, last, step = max(at - finer, 0.0), at + finer, finer
+        for work in prover.carried:
+            if work.least[0] < least:
+                own = np.full((1, 2), work.least[1])
+                least, at = work.least[0], float(schedules[work.worker].clocked(own)[0, 0])
         return least, at
 
     def _until(self, schedule: Schedule) -> float:

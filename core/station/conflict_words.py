@@ -37,6 +37,8 @@ def conflict_said(station: RobotStation, robots: tuple[str, str], conflict: Conf
         if conflict.distance > 0
         else "collide"
     )
+    if conflict.cause is ConflictCause.CARRIED:
+        return f"{first} and {second}, moved together ({' and '.join(places)}): {conflict.why}"
     why = _WHY.get(conflict.cause, f" ({conflict.cause})")
     return f"{first} and {second} {far}{why}: {places[0]} and {places[1]}"
 

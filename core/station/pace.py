@@ -28,18 +28,18 @@ class ClockPace:
         return cls(np.zeros(1), np.zeros(1))
 
     @classmethod
-    def slower(cls, spans: Sequence[tuple[float, float, float]]) -> ClockPace:
+    def slower(cls, spans: Sequence[tuple[FloatArray, FloatArray]]) -> ClockPace:
         """With spans that take longer.
 
         Args:
-            spans: begin and end, s of its own, in their order, and how long each takes.
+            spans: times (K,) s of its own, in their order, and s since the span began at which
+                they pass.
         """
-        own, clock = [0.0], [0.0]
-        for begin, end, length in spans:
-            own += [begin, end]
-            clock += [clock[-1] + begin - own[-3]]
-            clock += [clock[-1] + max(length, end - begin)]
-        return cls(np.array(own), np.array(clock))
+        own, clock = [np.zeros(1)], [np.zeros(1)]
+        for times, passed in spans:
+            own.append(times)
+            clock.append(clock[-1][-1] + times[0] - own[-2][-1] + passed)
+        return cls(np.concatenate(own), np.concatenate(clock))
 
     def passed(self, own: FloatArray) -> FloatArray:
         """s on the clock at times of its own; beyond all changes it is as driven."""

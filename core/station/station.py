@@ -15,6 +15,7 @@ from ..program.program import Program
 from ..program.tool import Load
 from ..program.world_zone import WorldZone
 from .actions import Action
+from .carried import CarriedMoves
 from .gates import Gate
 from .pace import ClockPace
 
@@ -53,6 +54,7 @@ class StationRobot:
         passing: what it drives where it passes through zones that waits stand behind; None where
             there are none.
         handling: of the parts of its cell; None for a cell without.
+        carried: what other robots turn under its program.
     """
 
     name: str
@@ -64,6 +66,7 @@ class StationRobot:
     pace: ClockPace = field(default_factory=ClockPace.steady)
     passing: Passing | None = None
     handling: Handling | None = None
+    carried: tuple[CarriedMoves, ...] = ()
 
     def carrying(self, program: Program) -> Program:
         """A program of the same moves with the parts that the robot carries along them."""

@@ -2,30 +2,45 @@
 
 MultiMove: moves between ``SyncMoveOn`` and ``SyncMoveOff`` whose ``\\ID`` is the same ("Application
 manual MultiMove"). RoboTeam: the motion behind a ``MotionSync``. The faster ones are driven more
-slowly all along, at one share of their speed.
+slowly all along, at one share of their speed. Where one works on what another one turns, one path
+parameter leads them all: at every instant each has driven the same share of its move, and none is
+faster than by itself.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..display import counted
 from ..errors import InputError, Note, Span
 from ..motion.emulator.run import Run
+from ..program.program import Program
 from ..program.signal import Meet
 from ..program.zone import Fine
-from .actions import Action
+from .actions import Action, MeetingPoint
 from .pace import ClockPace
 
 IdOf = Callable[[int], str | None]
 """The id of a move by its index; None for none."""
+_INSTANTS = 100
+"""Of a move at which its share is looked at, evenly in time."""
 
 
 @dataclass(frozen=True)
-class _Move:
-    """A move that is made together with others."""
+class TogetherMove:
+    """A move that is made together with others.
+
+    Args:
+        robot: that makes it.
+        index: among its moves.
+        name: what it is called in all programs.
+        span: where in the source.
+    """
 
     robot: str
     index: int
@@ -34,13 +49,14 @@ class _Move:
 
     @property
     def said(self) -> str:
+        """The move with its line."""
         return f"{self.robot}'s move {self.index + 1}" + (
             "" if not self.span else f" ({self.span})"
         )
 
 
 @dataclass(frozen=True)
-class _Block:
+class TogetherBlock:
     """Moves of one robot between the beginning and the end of such moves.
 
     Args:
@@ -50,13 +66,60 @@ class _Block:
     """
 
     robot: str
-    begins: Action
-    moves: tuple[_Move, ...]
+    begins: MeetingPoint
+    moves: tuple[TogetherMove, ...]
 
     @property
     def said(self) -> str:
-        span = self.begins.span
-        return f"behind {self.begins.text}" + ("" if span is None else f" ({span})")
+        """Where they begin."""
+        return f"behind {self.begins.said}"
+
+
+@dataclass(frozen=True)
+class Together:
+    """Blocks of several robots that are made together, as many moves in each.
+
+    Args:
+        label: of the meeting at which they begin.
+        nth: how many such meetings there were, this one counted.
+        blocks: one of each robot.
+    """
+
+    label: str
+    nth: int
+    blocks: tuple[TogetherBlock, ...]
+
+    def of(self, robot: str) -> TogetherBlock | None:
+        """The block of a robot; None if it takes no part."""
+        return next((block for block in self.blocks if block.robot == robot), None)
+
+
+def moves_together(
+    programs: Mapping[str, Program],
+    meetings: Mapping[str, Sequence[MeetingPoint]],
+    ids: Mapping[str, IdOf | None],
+) -> tuple[Together, ...]:
+    """The moves that robots make together.
+
+    Args:
+        programs: by robot.
+        meetings: of these.
+        ids: of moves; None of a language that synchronises one motion at a time.
+
+    Raises:
+        InputError: robots do not make the same moves together; it names both lines.
+    """
+    found: dict[tuple[str, int], list[TogetherBlock]] = {}
+    for name, program in programs.items():
+        counts: dict[str, int] = {}
+        for block in _blocks(name, program, meetings[name], ids[name]):
+            label = block.begins.does.label
+            nth = counts[label] = counts.get(label, 0) + 1
+            found.setdefault((label, nth), []).append(block)
+    several = {key: blocks for key, blocks in found.items() if len(blocks) > 1}
+    for blocks in several.values():
+        _check(blocks)
+    return tuple(Together(*key, tuple(blocks)) for key, blocks in several.items())
 
 
 @dataclass(frozen=True)
@@ -64,7 +127,7 @@ class Synchronised:
     """What comes of moves that are made together.
 
     Args:
-        paces: of the robots that are slowed down.
+        paces: of the robots that make such moves.
         actions: of all robots, with meetings where such moves begin.
         notes: what a user should know.
     """
@@ -77,87 +140,80 @@ class Synchronised:
 def synchronised(
     runs: Mapping[str, Run],
     actions: Mapping[str, tuple[Action, ...]],
-    ids: Mapping[str, IdOf | None],
+    together: Sequence[Together],
+    carried: Collection[str] = (),
 ) -> Synchronised:
-    """Find the moves that robots make together, and how long they take.
+    """How long moves take that are made together.
 
     Args:
         runs: programs as driven.
         actions: of these.
-        ids: of moves; None of a language that synchronises one motion at a time.
-
-    Raises:
-        InputError: robots do not make the same moves together; it names both lines.
+        together: see `moves_together`.
+        carried: robots that work on what others turn.
     """
-    together: dict[tuple[str, int], list[_Block]] = {}
-    for name, doings in actions.items():
-        counts: dict[str, int] = {}
-        for block in _blocks(name, runs[name], doings, ids[name]):
-            does = block.begins.does
-            assert isinstance(does, Meet)
-            nth = counts[does.label] = counts.get(does.label, 0) + 1
-            together.setdefault((does.label, nth), []).append(block)
-    lengths: dict[tuple[str, int], float] = {}
+    spans: dict[str, dict[int, tuple[FloatArray, FloatArray]]] = {name: {} for name in runs}
     meets: dict[str, list[Action]] = {name: [] for name in actions}
-    notes: list[Note] = []
-    for (label, nth), blocks in together.items():
-        if len(blocks) < 2:
-            continue
-        _check(blocks)
-        notes.append(_noted(blocks))
-        for k in range(len(blocks[0].moves)):
-            moves = [block.moves[k] for block in blocks]
-            longest = max(_length(runs[move.robot], move.index) for move in moves)
+    for each in together:
+        in_step = any(block.robot in carried for block in each.blocks)
+        for k in range(len(each.blocks[0].moves)):
+            moves = [block.moves[k] for block in each.blocks]
+            robots = [_Progress.of(runs[move.robot], move.index) for move in moves]
+            made = _in_step(robots) if in_step else _stretched(robots)
             # On the way through a zone nothing can be waited for, nor is it told when it is passed.
             stand = all(_stands(runs[move.robot], move.index) for move in moves)
-            for move in moves:
-                lengths[move.robot, move.index] = longest
+            for move, span in zip(moves, made, strict=True):
+                spans[move.robot][move.index] = span
                 if not stand:
                     continue
-                begin = _span(runs[move.robot], move.index)[0]
-                meet = Meet(f"{label} {nth} {move.name} {k}")
+                meet = Meet(f"{each.label} {each.nth} {move.name} {k}")
                 text = f"moves together, {move.name}"
+                begin = float(span[0][0])
                 meets[move.robot].append(Action(meet, begin, move.index - 1, text, move.span))
-    paces = {}
-    for name, run in runs.items():
-        spans = [
-            (*_span(run, index), length)
-            for (robot, index), length in sorted(lengths.items())
-            if robot == name
-        ]
-        if spans:
-            paces[name] = ClockPace.slower(spans)
-    made = {
+    paces = {
+        name: ClockPace.slower([own[index] for index in sorted(own)])
+        for name, own in spans.items()
+        if own
+    }
+    made_actions = {
         name: tuple(sorted((*doings, *meets[name]), key=lambda action: action.time))
         for name, doings in actions.items()
     }
-    return Synchronised(paces, made, tuple(notes))
+    notes = (
+        _noted(each, any(block.robot in carried for block in each.blocks)) for each in together
+    )
+    return Synchronised(paces, made_actions, tuple(notes))
 
 
-def _blocks(name: str, run: Run, doings: Sequence[Action], ids: IdOf | None) -> Iterator[_Block]:
-    meetings = [action for action in doings if isinstance(action.does, Meet)]
-    moves = run.program.moves
+def _blocks(
+    name: str, program: Program, meetings: Sequence[MeetingPoint], ids: IdOf | None
+) -> Iterator[TogetherBlock]:
+    moves = program.moves
     for k, begins in enumerate(meetings):
-        assert isinstance(begins.does, Meet)
         if not begins.does.coordinated:
             continue
         first = begins.move + 1
         if ids is None:
             behind = range(first, min(first + 1, len(moves)))
-            named = [_Move(name, i, begins.does.label, moves[i].statement) for i in behind]
+            called = [begins.does.label] * len(behind)
         else:
             last = meetings[k + 1].move if k + 1 < len(meetings) else len(moves) - 1
-            named = [
-                _Move(name, i, _called(ids(i)), moves[i].statement) for i in range(first, last + 1)
-            ]
-        yield _Block(name, begins, tuple(named))
+            behind = range(first, last + 1)
+            called = [_called(ids(i)) for i in behind]
+        yield TogetherBlock(
+            name,
+            begins,
+            tuple(
+                TogetherMove(name, i, one, moves[i].statement)
+                for i, one in zip(behind, called, strict=True)
+            ),
+        )
 
 
 def _called(name: str | None) -> str:
     return "no ID" if name is None else f"ID {name}"
 
 
-def _check(blocks: Sequence[_Block]) -> None:
+def _check(blocks: Sequence[TogetherBlock]) -> None:
     """All robots make the same moves, in the same order.
 
     Raises:
@@ -188,13 +244,16 @@ def _check(blocks: Sequence[_Block]) -> None:
             )
 
 
-def _noted(blocks: Sequence[_Block]) -> Note:
+def _noted(together: Together, in_step: bool) -> Note:
+    blocks = together.blocks
     robots = " and ".join(block.robot for block in blocks)
     moves = counted(blocks[0].moves, "move")
+    driven = "the others are driven more slowly all along, at one share of their speed"
+    if in_step:
+        driven = "at every instant each has driven the same share of its move"
     return Note(
         f"{robots} make {moves} together {blocks[0].said}: each takes as long as the slowest, and "
-        "the others are driven more slowly all along, at one share of their speed; how the "
-        "controller shares the pace out within a move is not known"
+        f"{driven}; how the controller shares the pace out within a move is not known"
     )
 
 
@@ -203,18 +262,69 @@ def _stands(run: Run, index: int) -> bool:
     return index == 0 or isinstance(run.program.moves[index - 1].zone, Fine)
 
 
-def _span(run: Run, index: int) -> tuple[float, float]:
-    """s of its own from the beginning of a move to its end, waits behind it left out."""
-    moves, begins = run.path.route.moves, run.timing.begins()
-    k = bisect_left(moves, index)
-    if k == len(moves) or moves[k] != index:
-        # It leads nowhere: the robot stands there.
-        at = float(begins[k]) if k < len(moves) else run.duration
-        return at, at
-    begin = float(begins[k])
-    return begin, begin + float(run.timing.settled_durations()[k])
+@dataclass(frozen=True)
+class _Progress:
+    """How far a robot is on a move when.
+
+    Args:
+        begin, end: s of its own, waits behind the move left out.
+        share: (S,) of the move's path, rising from 0 to 1; empty for a move that leads nowhere.
+        own: (S,) s of its own.
+    """
+
+    begin: float
+    end: float
+    share: FloatArray
+    own: FloatArray
+
+    @classmethod
+    def of(cls, run: Run, index: int) -> _Progress:
+        """Of a move by its index."""
+        moves, timing = run.path.route.moves, run.timing
+        begins = timing.begins()
+        k = bisect_left(moves, index)
+        if k == len(moves) or moves[k] != index:
+            # It leads nowhere: the robot stands there.
+            at = float(begins[k]) if k < len(moves) else run.duration
+            return cls(at, at, np.empty(0), np.empty(0))
+        begin = float(begins[k])
+        end = begin + float(timing.settled_durations()[k])
+        rows = np.flatnonzero(timing.interval_segments == k)
+        sample = timing.intervals.sample[rows]
+        first, last = run.path.sigma[sample[0]], run.path.sigma[sample[-1] + 1]
+        own = np.linspace(begin, end, _INSTANTS + 1)
+        place = timing.place_at(own - timing.lag)
+        share = np.clip((place - first) / (last - first), 0.0, 1.0)
+        share[0], share[-1] = 0.0, 1.0
+        share, which = np.unique(share, return_index=True)
+        return cls(begin, end, share, own[which])
+
+    def at(self, share: FloatArray) -> FloatArray:
+        """s of its own at shares of the move."""
+        return np.interp(share, self.share, self.own)
 
 
-def _length(run: Run, index: int) -> float:
-    begin, end = _span(run, index)
-    return end - begin
+def _stretched(robots: Sequence[_Progress]) -> list[tuple[FloatArray, FloatArray]]:
+    """As `_in_step`, where each only takes what the slowest takes."""
+    ends = np.array([0.0, max(robot.end - robot.begin for robot in robots)])
+    return [(np.array([robot.begin, robot.end]), ends) for robot in robots]
+
+
+def _in_step(robots: Sequence[_Progress]) -> list[tuple[FloatArray, FloatArray]]:
+    """Times of each robot's own on a move, and s since it began at which they pass together."""
+    driving = [robot for robot in robots if len(robot.share)]
+    if not driving:
+        return [(np.array([robot.begin]), np.zeros(1)) for robot in robots]
+    shares = np.unique(np.concatenate([robot.share for robot in driving]))
+    own = [robot.at(shares) for robot in driving]
+    for robot, times in zip(driving, own, strict=True):
+        times[-1] = robot.end
+    # None is faster than by itself: its limits hold, and so do the bounds of its deviations.
+    steps = np.max([np.diff(times) for times in own], axis=0)
+    passed = np.append(0.0, np.cumsum(steps))
+    known = dict(zip(map(id, driving), own, strict=True))
+    ends = np.array([0.0, passed[-1]])
+    return [
+        (known[id(robot)], passed) if id(robot) in known else (np.full(2, robot.begin), ends)
+        for robot in robots
+    ]

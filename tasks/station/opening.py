@@ -7,10 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.errors import FlybyError, InputError, MotionError, Note
-from ..read import SourceOptions, read_with
-from ..results.cell_course import CellCourse
-from ..setup import setup_of_program, start_of
+from ...core.errors import InputError, MotionError, Note
+from ..setup import start_of
+from .members import ReadMember, drive_members, read_member
 from .names import check_names
 from .own_parts import check_own_parts
 
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
     from ...core.source.text.files import SourceFile
     from ...core.station.actions import Action
     from ...core.station.station import Driven, Passing, RobotStation, StationRobot
-    from ...core.station.station_file import MemberFile, StationFile
-    from ...core.station.synchronised import IdOf
+    from ...core.station.station_file import StationFile
 
 
 @dataclass(frozen=True)
@@ -53,34 +51,42 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     from ...core.station.hand_over import check_hand_overs
     from ...core.station.station import RobotStation
     from ...core.station.station_file import read_station_file
-    from ...core.station.synchronised import synchronised
+    from ...core.station.synchronised import moves_together, synchronised
     from ...core.station.world_zones import on_at_start, with_zones
 
     file = read_station_file(source) if is_station_file(source) else _of_backup(source)
-    members, actions, ids = {}, {}, {}
+    read: dict[str, ReadMember] = {}
+    for stated in file.members:
+        say(f"reading {stated.name}")
+        read[stated.name] = read_member(stated, file)
+    try:
+        together = moves_together(
+            {name: one.program for name, one in read.items()},
+            {name: one.meetings for name, one in read.items()},
+            {name: one.ids() for name, one in read.items()},
+        )
+    except InputError as error:
+        raise InputError(f"{file.file}: {error}") from None
+    driven = drive_members(read, file, together, say)
+    members, actions = {}, {}
     unknown: list[Note] = []
     notes: list[Note] = []
-    for member in file.members:
-        say(f"reading and driving {member.name}")
-        made, words, passed, of_parts = _member(member, file)
+    for name, (made, of_parts) in driven.items():
+        words, passed = read[name].words, read[name].passed
         notes += of_parts
-        members[member.name] = made
         file, said = _with_own_zones(file, made, words)
         _check_axes(file, made)
-        actions[member.name] = with_zones(
-            actions_of(made.run, words), file.zones, member.name, made.run
-        )
-        members[member.name] = replace(made, passing=_passing(file, made, words, passed))
-        ids[member.name] = _ids(made, words)
-        looked_at = _looked_at(file, member.name) - _zoned(file, member.name)
+        actions[name] = with_zones(actions_of(made.run, words), file.zones, name, made.run)
+        members[name] = replace(made, passing=_passing(file, made, words, passed))
+        looked_at = _looked_at(file, name) - _zoned(file, name)
         for note in said:
-            asked = any(name.casefold() in note.message.casefold() for name in looked_at)
+            asked = any(one.casefold() in note.message.casefold() for one in looked_at)
             (unknown if asked else notes).append(note)
         for text, span in unknown_of(made.run, words, looked_at):
             where = "" if span is None else f"{span}: "
             unknown.append(
                 Note(
-                    f"{member.name}: {where}{text}: what this does to its signal is not known, and "
+                    f"{name}: {where}{text}: what this does to its signal is not known, and "
                     "times are as if it did nothing; what the interlocks allow is not looked at"
                 )
             )
@@ -90,10 +96,8 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
         why = "; ".join(note.message for note in unknown if "not followed" in note.message)
         raise InputError(f"{error}; {why}" if why else str(error)) from None
     _check_starts(file, members)
-    try:
-        shared = synchronised({n: m.run for n, m in members.items()}, actions, ids)
-    except InputError as error:
-        raise InputError(f"{file.file}: {error}") from None
+    carried = [name for name, member in members.items() if member.carried]
+    shared = synchronised({n: m.run for n, m in members.items()}, actions, together, carried)
     actions = shared.actions
     members = {n: replace(m, pace=shared.paces.get(n, m.pace)) for n, m in members.items()}
     station = RobotStation(
@@ -223,44 +227,6 @@ def _check_axes(file: StationFile, member: StationRobot) -> None:
             )
 
 
-def _check_carriers(program: Program) -> None:
-    """No targets in a work object that something moves which is not followed.
-
-    Where it is when a robot drives there, and so the path, nobody knows: no clearance would be
-    proven of what is really driven.
-    """
-    for index, move in enumerate(program.moves):
-        unit = move.work_object.not_followed
-        if unit is not None:
-            where = "" if move.statement is None else f"{move.statement}: "
-            raise InputError(
-                f"{where}move {index + 1}: its target is in work object "
-                f"{move.work_object.name}, which {unit} moves, and {unit} is no axis of this "
-                "robot: paths in a frame that another robot or its task moves are not driven yet. "
-                f"If {unit} is a table, give it to this robot, as [external_axis.{unit}] of its "
-                "cell, with its angles in the targets' eax_a; if it is another robot, leave these "
-                "moves out of the programs of the station"
-            )
-
-
-def _ids(member: StationRobot, words: SignalWords | None) -> IdOf | None:
-    """The ids by which a program's moves are made together with others'."""
-    from ...core.source.reading import Reading
-
-    together = None if words is None else words.together
-    if together is None:
-        return None
-    program = member.program
-
-    def found(index: int) -> str | None:
-        span, reading = program.moves[index].statement, program.reading
-        if span is None or not isinstance(reading, Reading) or span.file not in reading.files:
-            return None
-        return together(reading.files[span.file].text[span.start : span.end])
-
-    return found
-
-
 def _alone(actions: dict[str, tuple[Action, ...]]) -> Iterator[Note]:
     """Meetings to which no other robot of the station comes."""
     from ...core.program.signal import Meet
@@ -337,46 +303,6 @@ def _passing(
     return made
 
 
-def _member(
-    member: MemberFile, file: StationFile
-) -> tuple[StationRobot, SignalWords | None, tuple[int, ...], list[Note]]:
-    """A robot that stops for all waits, how its language says what it does with signals, the moves
-    whose zones it may pass through though a wait stands behind, and what there is to say of its
-    parts."""
-    from ...core.driving.past_faults import refuse_faults
-    from ...core.motion.emulator.controller import Controller
-    from ...core.station.passing import stopping, waits_behind_zones
-    from ...core.station.station import StationRobot
-
-    try:
-        source = SourceOptions(
-            cell=member.cell,
-            entry=member.entry,
-            task=member.task,
-            answers=member.answers,
-            start=member.start,
-            configuration=member.configuration,
-        )
-        program: Program = read_with(member.program, source)
-        setup = setup_of_program(program)
-        _check_carriers(program)
-        words = None if setup.vendor.speaks is None else setup.vendor.speaks.signals
-        passed = waits_behind_zones(program, words)
-        program = stopping(program, words)
-        controller = Controller(setup.vendor, setup.robot)
-        refuse_faults(controller, program, start_of(program))
-        course = CellCourse.of(program, setup)
-        run = controller.run(course.program, start_of(program))
-    except FlybyError as error:
-        raise InputError(f"{file.file}: robot.{member.name}: {error}") from error
-    cell = setup.surroundings(program)
-    made = StationRobot(
-        member.name, program, controller, cell, run, member.begins, handling=course.handling
-    )
-    said = [replace(note, message=f"{member.name}: {note.message}") for note in course.notes]
-    return made, words, passed, said
-
-
 def _foot(robot: Robot) -> tuple[float, float, float]:
     """Where a robot's first axis stands on the level of its base, m in the world: two arms on one
     body share a base."""
@@ -390,7 +316,8 @@ def _check_starts(file: StationFile, members: dict[str, StationRobot]) -> None:
     """No two robots stand in one place."""
     import numpy as np
 
-    places = {name: np.array(_foot(member.cell.robot)) for name, member in members.items()}
+    arms = {n: m.cell.robot for n, m in members.items() if m.cell.robot.has_arm}
+    places = {name: np.array(_foot(robot)) for name, robot in arms.items()}
     names = list(places)
     for k, one in enumerate(names):
         for other in names[k + 1 :]:

@@ -109,7 +109,8 @@ def trials_begun(
             if member.passing is not None and any(which):
                 moves = [m for m, w in zip(member.passing.moves, which, strict=True) if w]
                 way, actions[name] = member.passing.drive(moves)
-            pace = ClockPace.slower([(0.0, way.duration, factor * way.duration)])
+            own = np.array([0.0, way.duration])
+            pace = ClockPace.slower([(own, factor * own)])
             driven[name] = replace(member, run=way, pace=pace, begins=member.begins + float(begin))
         station = replace(made.station, members=driven)
         run = StationClock(station, actions, late).run()

@@ -25,6 +25,8 @@ class ConflictCause(StrEnum):
     """One robot may let go of a part that lies on nothing before the other one has it."""
     TORN = "torn"
     """One robot may drive off with a part before the other one has let go of it."""
+    CARRIED = "not proven on what the other turns"
+    """A robot that works on what the other one turns, on moves that both make together."""
     OWN_CELL = "not proven in its own cell"
     """A robot's way to a part that is handed over, or back from it, is not proven."""
 

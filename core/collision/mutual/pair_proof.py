@@ -18,6 +18,7 @@ from ..distance.closed_form import Hulls, measure
 from ..distance.coal_engine import CoalEngine
 from ..distance.containment import Nesting
 from ..distance.engine import BodyPoses
+from .carried_work import CarriedPairs, CarriedWork
 from .conflict import Conflict, ConflictCause, PairVerdict
 from .handed_part import AwaitedPairs, AwaitedPart, HandedPairs, HandedPart
 from .interval_tree import interval_tree, near_pairs
@@ -52,6 +53,7 @@ class PairProver:
         allowed: pairs of names of things that may touch, of the one and of the other.
         handed: parts that one of them hands to the other.
         awaited: parts that one of them gets of a third robot.
+        carried: moves that one of them makes on what the other one turns.
     """
 
     def __init__(
@@ -61,6 +63,7 @@ class PairProver:
         allowed: Sequence[tuple[str, str]] = (),
         handed: Sequence[HandedPart] = (),
         awaited: Sequence[AwaitedPart] = (),
+        carried: Sequence[CarriedWork] = (),
     ) -> None:
         self.one, self.other = one, other
         self.pairs: IntArray = np.array(
@@ -76,10 +79,11 @@ class PairProver:
         solids = [own.body.solid for own in (*one.bodies, *other.bodies)]
         self._engine = CoalEngine(solids, Nesting(solids))
         self._count = len(solids)
-        self.handed = tuple(handed)
-        self._without: list[HandedPairs | AwaitedPairs] = [
+        self.handed, self.carried = tuple(handed), tuple(carried)
+        self._without: list[HandedPairs | AwaitedPairs | CarriedPairs] = [
             *(HandedPairs(part, (one, other), self.pairs) for part in handed),
             *(AwaitedPairs(part, (one, other), self.pairs) for part in awaited),
+            *(CarriedPairs(work, (one, other), self.pairs) for work in carried),
         ]
 
     def prove(self, clearance: float, meetings: Meetings, budget: int = BUDGET) -> PairVerdict:
@@ -93,6 +97,9 @@ class PairProver:
         verdict = _Search(self, clearance, meetings, budget).run()
         for part in self.handed:
             for conflict in self._out_of_turn(part, meetings.in_turn(part)):
+                verdict.conflicts.setdefault(conflict.moves, conflict)
+        for work in self.carried:
+            for conflict in work.conflicts():
                 verdict.conflicts.setdefault(conflict.moves, conflict)
         return verdict
 

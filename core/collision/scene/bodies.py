@@ -96,7 +96,7 @@ def bodies_of(cell: Cell, tool: Tool) -> Bodies:
 
 
 def _check_robot(robot: Robot) -> None:
-    if not robot.shapes:
+    if robot.has_arm and not robot.shapes:
         raise InputError(
             f"robot {robot.name} has no shapes, so its collisions are not known; add [[shape]] "
             "tables (capsules round its links) to its catalogue file"

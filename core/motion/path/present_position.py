@@ -42,6 +42,8 @@ class PresentPosition:
 
     def __init__(self, robot: Robot | None, start: JointTarget | None, label: Label) -> None:
         self.robot = robot
+        if start is None and robot is not None and not robot.has_arm:
+            start = JointTarget((0.0,) * robot.arm_size)
         self.start = start
         self.asked = 0
         self.last: Move | None = None

@@ -106,11 +106,15 @@ class StationFeasibility:
         jitter: float,
         say: Callable[[str], None] = lambda _: None,
     ) -> None:
-        together = [name for name, member in station.members.items() if len(member.pace.own) > 1]
+        together = [
+            name
+            for name, member in station.members.items()
+            if len(member.pace.own) > 1 or member.carried
+        ]
         if together:
             raise InputError(
-                f"{', '.join(together)}: programs whose moves are made together with other robots' "
-                "are not improved yet"
+                f"{', '.join(together)}: programs whose moves are made together with other "
+                "robots', or on what these turn, are not improved yet"
             )
         for name, member in station.members.items():
             if member.passing is not None:

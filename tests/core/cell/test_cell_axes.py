@@ -48,3 +48,25 @@ def test_what_is_no_direction(tmp_path, axis: str) -> None:
     file.write_text(file.read_text("utf-8").replace('axis = "z"', f"axis = {axis}"), "utf-8")
     with pytest.raises(InputError, match="axis"):
         load_cell(file, installed())
+
+
+TABLE = """
+[external_axis.table]
+role = "table"
+kind = "revolute"
+axis = "z"
+range_deg = [-90, 90]
+speed_deg_s = 90
+acceleration_deg_s2 = 180
+"""
+
+
+def test_a_cell_without_a_robot_is_a_positioner(tmp_path: Path) -> None:
+    file = tmp_path / "cell.toml"
+    file.write_text(f'vendor = "abb"\n{TABLE}')
+    robot = load_cell(file, installed()).robot
+    assert not robot.has_arm and robot.axis_names[-1] == "table"
+    for text, words in ((TABLE, "robot: .*give the vendor"), (f'vendor = "abv"\n{TABLE}', "abb")):
+        file.write_text(text)
+        with pytest.raises(InputError, match=words):
+            load_cell(file, installed())
