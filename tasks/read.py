@@ -13,7 +13,7 @@ from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
 from ..core.source.text.files import refuse_no_text
 from .backup.finding import find_backup
 from .backup.opening import read_task, setup_in, task_of, told_of_setup
-from .backup.surrounding import surrounding_note
+from .backup.surrounding import backup_round, surrounding_note
 from .catalogue import registry
 from .fitting import arms_that_fit
 from .options.entries import TaskOptions, count, value
@@ -138,17 +138,33 @@ def read_undriven(source: str | Path, options: SourceOptions) -> Program:
     """What the text of a program says by itself: its moves, for no robot.
 
     Args:
-        source: a file, or a folder that holds one program.
+        source: a file, a folder that holds one program, or a backup of a station.
 
     Raises:
         InputError: there is no such file, or nothing says whose language it is.
         SourceError: it cannot be read, or needs a robot to be read at all.
     """
     path = Path(source)
+    backup = backup_in(source, options)
+    if backup is not None:
+        task, answers = task_of(backup, options.task, options.entry), answers_of(options)
+        return read_task(backup, task, None, options.entry, answers, options.others, None)
     _check_it_is_a_program(source)
     vendor = _vendor_in(path) if path.is_dir() else registry().reader_of(path)
     file = _program_in(path, vendor, None, options) if path.is_dir() else path
     return vendor.read_file(file, options.entry, None, answers_of(options), options.others)
+
+
+def vendor_of(source: str | Path, options: SourceOptions) -> Vendor:
+    """Whose program a file, a folder or a backup is.
+
+    Raises:
+        InputError: nothing tells.
+    """
+    backup, path = backup_in(source, options), Path(source)
+    if backup is not None:
+        return registry().find_vendor(backup.vendor)
+    return _vendor_in(path) if path.is_dir() else registry().reader_of(path)
 
 
 def _vendor_in(folder: Path) -> Vendor:
@@ -191,6 +207,18 @@ def surrounding(source: str | Path) -> Note | None:
     if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
         return None
     return surrounding_note(Path(source), registry())
+
+
+def arm_around(source: str | Path) -> Robot | None:
+    """The arm of the backup that a program file lies in; None where it tells of none or several."""
+    if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
+        return None
+    found = backup_round(Path(source), registry())
+    with suppress(FlybyError):
+        backup = None if found is None else find_backup(found[1], registry())
+        arms = () if backup is None else tuple(one.robot for one in backup.robots)
+        return arms[0] if len(arms) == 1 else None
+    return None
 
 
 def _check_it_is_a_program(source: str | Path) -> None:

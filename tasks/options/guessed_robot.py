@@ -17,12 +17,13 @@ from ...core.errors import EntryError, FlybyError, InputError, Note, OptionError
 from ...core.files.reading import read_bytes
 from ...core.program.entry_point import ALL
 from ...core.source.text.files import LARGEST_FILE, refuse_no_text
-from ..catalogue import registry
+from ..backup.opening import task_of
 from ..fitting import said_to_fit
-from ..read import SourceOptions, backup_in, read_undriven, read_with, surrounding
+from ..read import SourceOptions, arm_around, backup_in, read_undriven, read_with, vendor_of
 from ..setup import setup_of, start_of
 
 if TYPE_CHECKING:
+    from ...core.backup.backup import Backup
     from ...core.program.program import Program
     from ...core.robot.arm_list import Listed
 
@@ -53,8 +54,13 @@ def with_robot(
     """
     if options.robot is not None or options.cell is not None:
         return options, ()
-    if backup_in(source, options) is not None or surrounding(source) is not None:
+    backup = backup_in(source, options)
+    if backup is not None and _says_its_robot(backup, options):
         return options, ()
+    own = arm_around(source) if backup is None else None
+    if own is not None:
+        said = f"{own.name} is taken, which is the robot of the backup around {source}"
+        return replace(options, robot=own.name), (Note(said),)
     found = _guessed(source, options)
     if found is None:
         return options, ()
@@ -81,6 +87,17 @@ def read_or_guess(source: str | Path, options: SourceOptions) -> Program:
     return replace(program, notes=(*notes, *program.notes))
 
 
+def _says_its_robot(backup: Backup, options: SourceOptions) -> bool:
+    """Whether a backup names the robot of the task that is read, or that task is yet to be named:
+    what reads it says so."""
+    try:
+        index = task_of(backup, options.task, options.entry).robot
+    except FlybyError:
+        return True
+    robot = backup.robots[index] if index is not None and index < len(backup.robots) else None
+    return robot is not None and (robot.robot is not None or bool(robot.written))
+
+
 def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] | None:
     """An arm, and why it is taken."""
     from ...core.driving.fitting_arms import TakenPlaces
@@ -91,7 +108,7 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
     path = Path(source)
     program: Program | None = None
     try:
-        vendor = registry().reader_of(path)
+        vendor = vendor_of(source, options)
     except FlybyError:
         return None  # what reads it says why
     if path.is_file():
@@ -111,7 +128,12 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
         fit = places.taken_by(vendor, named) if places.count else []
         return (*fit, *named)[0], f"{text!r} stands in its text or folder"
     if program is None or not places.count:
-        return _middle(arms)
+        middle, seven = _middle(arms), [arm for arm in arms if arm.axes == _USUAL + 1]
+        if program is None or middle is None or not seven or not 0 < len(program.moves) <= _LONGEST:
+            return middle
+        # A seventh axis may be written as one beside the arm: what its values are, that arm knows.
+        best = _first_that_drives(source, options, ([middle[0], *seven], []), 1 + len(seven))
+        return middle if best is middle[0] else (best, "it has a seventh axis, which targets name")
     fit = places.taken_by(vendor, arms)
     why = f"{said_to_fit(fit, places.count)}{assumed}"
     if not fit:

@@ -11,6 +11,8 @@ from flyby.core.errors import FlybyError, InputError
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
+from ..vendors.abb.backup.station import Station
+
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 
 
@@ -99,6 +101,16 @@ def test_an_arm_is_taken_that_drives_the_known_places_with_an_unknown_frame_put_
     assert not run.faults and run.report.unknown == ("wPallet",)
 
 
+def test_an_arm_of_seven_axes_is_taken_where_targets_have_a_value_for_the_seventh(
+    tmp_path: Path,
+) -> None:
+    target = "[[%d,240,230],[0,0,1,0],[0,0,0,4],[-140,9E9,9E9,9E9,9E9,9E9]]"
+    moves = [f"MoveL {target % x},v100,fine,tool0;" for x in (380, 420)]
+    moves.append("MoveL " + (target % 400).replace("-140", "-135") + ",v100,fine,tool0;")
+    robot, said = taken(rapid(tmp_path, *moves))
+    assert robot == "abb/irb14000-05-056-left" and "a seventh axis, which targets name" in said
+
+
 def test_who_names_a_robot_is_heard(tmp_path: Path) -> None:
     file = rapid(tmp_path, at(600, 0, 600))
     options = SourceOptions(robot="abb/irb120-3-058")
@@ -147,3 +159,30 @@ def test_what_is_written_is_for_the_robot_that_somebody_names(tmp_path: Path) ->
             with_robot(file, SourceOptions(), writes=True, option=option)
     named = SourceOptions(robot=robot)
     assert with_robot(file, named, writes=True) == (named, ())
+
+
+def test_a_program_in_a_backup_is_for_the_robot_of_that(tmp_path: Path) -> None:
+    backup = Station().write(tmp_path / "Backup_1")
+    (main,) = backup.rglob("MainModule.mod")
+    robot, said = taken(main)
+    assert robot == "abb/irb4600-40-255" and "the robot of the backup around" in said
+    assert taken(backup) == (None, "")  # it says so itself
+
+
+def test_a_backup_that_names_no_arm_is_driven_by_one_that_can(tmp_path: Path) -> None:
+    folder = tmp_path / "cell"
+    point = "{X 900,Y %d,Z 800,A 0,B 180,C 0}"
+    moves = "\n".join(f"PTP {point % (100 * k)}" for k in range(3))
+    config = (
+        "DEFDAT $CONFIG\nDECL FRAME TOOL_DATA[2]\nTOOL_DATA[1]={X 0,Y 0,Z 90,A 0,B 0,C 0}\nENDDAT\n"
+    )
+    main = folder / "Program" / "Sacks" / "main.src"
+    main.parent.mkdir(parents=True)
+    main.write_text(f"DEF main()\nBAS(#TOOL,1)\n{moves}\nEND\n", "utf-8")
+    (folder / "System").mkdir()
+    (folder / "System" / "$config.dat").write_text(config, "utf-8")
+    for source, entry in ((main, None), (folder, "main"), (folder, None)):
+        program = read_or_guess(source, SourceOptions(entry=entry))
+        assert "can take the 3 places" in program.notes[0].message
+        assert program.moves[0].tool.tcp.position == (0, 0, 0.09)
+        assert not flyby.emulate(program).faults

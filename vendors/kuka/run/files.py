@@ -2,8 +2,9 @@
 
 The program's own ``.dat``, ``$CONFIG.DAT``, and of the files around it those that its text calls by
 name or that declare something ``GLOBAL``; from there on, what these call. Around it is the tree of
-the controller that its folder stands in (``KRC``, ``R1``, ``Program``, ``System``, …); of a folder
-that stands in none, the folders in it, the one that it stands in, and such a tree beside it.
+the controller that its folder stands in (``KRC``, ``R1``, ``Program``, ``System``, …), with the
+trees beside that; of a folder that stands in none, the folders in it, the one that it stands in,
+and such a tree beside it.
 """
 
 from __future__ import annotations
@@ -92,7 +93,9 @@ def _folders(path: Path) -> list[Path]:
     own = path.resolve().parent
     tree = [folder for folder in (own, *own.parents[:_DEEPEST]) if folder.name.lower() in _TREE]
     if tree:
-        around = list(_inside(tree[-1], _DEEPEST))
+        # What they stand in may be called otherwise: the folder of a copy, of a repository.
+        beside = [f for f in _subfolders(tree[-1].parent, _TREE) if f != tree[-1]]
+        around = [f for root in (tree[-1], *beside) for f in _inside(root, _DEEPEST)]
     else:
         beside = _subfolders(own.parent, _TREE)
         around = [*_inside(own, _DEEPEST), own.parent, *beside]
