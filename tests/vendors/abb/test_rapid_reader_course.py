@@ -139,6 +139,17 @@ def test_answers_to_branches_and_passes_by_line():
         program(body, answers=Answers(branches={"a.mod:4": 3}, file="io.toml"))
 
 
+def test_what_others_write_into_a_pers_is_answered():
+    data = "PERS num z:=0;\nVAR num y:=3;\nPERS pos at0:=[1,2,0];"
+    answers = Answers(values={"z": 4.0, "y": 9.0, "at0": (5.0, 6.0, 7.0)})
+    assert heights("at z; at y; at at0.z; z:=z+1; at z;", data, answers=answers) == [4, 3, 7, 5]
+    assert heights("at z; at at0.z;", data) == [0, 0]
+    asked = program("at z;", data, answers=answers).questions
+    assert not any(question.key == "z" for question in asked)  # the text says it
+    with pytest.raises(SourceError, match="the answer to 'z'"):
+        heights("at z;", data, answers=Answers(values={"z": "red"}))
+
+
 def test_a_datum_of_a_module_that_is_not_at_hand_is_written():
     body = "nDone := 4;\nIncr nDone;\nat nDone;\nsPlc.state := 7;\nnDone := 6;\nat nDone;"
     assert heights(body) == [5, 6]

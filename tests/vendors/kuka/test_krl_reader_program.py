@@ -344,6 +344,13 @@ def write(folder, name, text):
     return path
 
 
+def test_a_file_whose_name_ends_in_the_brackets_of_a_call(tmp_path):
+    main = write(tmp_path, "cell/main().src", "DEF main( )\nBAS(#INITMOV,0)\nLift()\nEND")
+    write(tmp_path, "cell/up/Lift().src", "DEF Lift( )\nLIN XP1\nEND")
+    write(tmp_path, "cell/up/Lift().dat", f"DEFDAT Lift\nDECL FRAME XP1={POSE % 3}\nENDDAT")
+    assert visited(Krl().read_file(main, ReadOptions())) == [3]
+
+
 def test_a_controller_s_tree(tmp_path):
     main = write(
         tmp_path, "R1/Program/Cell.src", "DEF Cell( )\nBAS(#INITMOV,0)\nBAS(#BASE,1)\nfetch()\nEND"

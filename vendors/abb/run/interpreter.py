@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import NoReturn
 from weakref import proxy
 
+from ....core.door import spelt
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
@@ -103,7 +104,11 @@ class Interpreter(RapidHost):
         """
         span = error.span
         said = str(error).removeprefix(f"{span}: ")
-        stopped = SourceError(f"{said}: the controller stops the program here", span)
+        stopped = SourceError(
+            f"{said}: the controller stops the program here; PERS data that others (another task, "
+            f"a computer) write are said in a file ({spelt('answers')}): [values]",
+            span,
+        )
         if span is None or not self.meter.moves or not self.out.leaves_open(stopped, span, True):
             raise error
         raise Finished

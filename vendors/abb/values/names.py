@@ -200,6 +200,10 @@ class Names(ABC):
             shared = declaration.kind == "pers"
             value = unset(type_, declaration.text, declaration.span, shared=shared)
             return filled(value, sizes), None, None
+        if declaration.kind == "pers":  # others may write it, whatever the text says
+            told = self.answers.ask_by(declaration.text, declaration.span, type_, sizes)
+            if told is not None:
+                return told, None, None
         found = self.locate(declaration.value, scope)
         value = found.value
         wrong = array_mismatch(value, type_, sizes)

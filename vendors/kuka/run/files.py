@@ -19,7 +19,7 @@ from pathlib import Path
 from ....core.errors import FlybyError
 from ....core.source.text.files import SourceFile, read_source
 from ....core.source.text.lexer import words
-from ..values.library import CONFIG
+from ..values.library import CONFIG, stem_of
 
 SUFFIXES = (".src", ".sub", ".dat")
 _TREE = ("krc", "r1", "program", "system", "tp", "folgen", "up", "makros", "mada", "steu")
@@ -55,7 +55,7 @@ def collect(
             files.setdefault(str(named), read_source(named))
     near = _near(path) if beside is None else _by_stem(path, beside)
     seen = _words(files.values())
-    for stem in (path.stem.lower(), CONFIG):
+    for stem in (stem_of(path.name), CONFIG):
         _take(files, near.pop(stem, []), seen)
     scanned = list(near) if beside is not None else list(near)[:_LARGEST_SCAN]
     shared = {stem: _shared_names(near[stem]) for stem in scanned}
@@ -84,7 +84,7 @@ def _by_stem(path: Path, around: Iterable[Path]) -> dict[str, list[Path]]:
     own = path.resolve()
     for entry in around:
         if entry.suffix.lower() in SUFFIXES and entry.resolve() != own:
-            near.setdefault(entry.stem.lower(), []).append(entry)
+            near.setdefault(stem_of(entry.name), []).append(entry)
     return near
 
 

@@ -27,8 +27,9 @@ _GLOBAL_DATA = re.compile(r"(?im)^[ \t]*(?:decl[ \t]+)?(?:const[ \t]+)?global[ \
 
 
 def stem_of(name: str) -> str:
-    """File name without folder and suffix, lower case."""
-    return name.replace("\\", "/").rpartition("/")[2].rpartition(".")[0].lower()
+    """File name without folder and suffix, nor the brackets of a call, lower case."""
+    stem = name.replace("\\", "/").rpartition("/")[2].rpartition(".")[0]
+    return stem.lower().removesuffix("()")
 
 
 def _folder(name: str) -> str:
