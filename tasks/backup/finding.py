@@ -69,7 +69,7 @@ def find_backup(path: str | Path, registry: Registry, marked: bool = False) -> B
     else:
         folder, names = source.parent, [source.name]
     found = _nearest(source, _found(names, registry))
-    if found is None and not marked:
+    if found is None and not marked and (unpacked is not None or source.is_dir()):
         found = _programs_alone(names, registry)
     if found is None:
         _refuse_unreadable(source, names, registry)
@@ -115,10 +115,8 @@ def _found(names: Sequence[str], registry: Registry) -> Iterator[_Found]:
 
 
 def _programs_alone(names: Sequence[str], registry: Registry) -> _Found | None:
-    """Programs of one vendor that no backup marks; a single file is read by itself."""
+    """Programs of one vendor that no backup marks."""
     programs = _programs(names, registry)
-    if len(names) == 1:
-        return None
     sure = {n: of for n, of in programs.items() if PurePosixPath(n).suffix.casefold() not in _TEXTS}
     for vendor in registry.vendors.values():
         if vendor.backups is None or not all(

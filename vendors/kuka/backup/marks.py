@@ -7,11 +7,13 @@
     KRC/STEU/Mada             $machine.dat: the rest
     C/                        files of the operating system, templates: no programs
 
-Often only ``R1`` and ``STEU`` are there, or ``R1``, or a part of that.
+Often only ``R1`` and ``STEU`` are there, or ``R1``, or a part of that; or just programs, with a
+``$config.dat`` beside them or without.
 """
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -25,6 +27,7 @@ robot-forum.com, thread 34305."""
 _IIQKA = re.compile("iiqka|iiqworks", re.IGNORECASE)
 _ROOMS = frozenset({"program", "system", "mada", "tp"}) | _VKRC
 _SOURCES = (".src", ".sub", ".dat")
+_PROGRAMS = ".src"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +48,22 @@ class Layout:
 def root_in(names: Sequence[str]) -> str | None:
     """The folder in which an archive begins; see `core.language.BackupOpener.root_in`."""
     return min((root for name in names for root in _roots(name)), key=_order, default=None)
+
+
+def programs_in(names: Sequence[str]) -> str | None:
+    """The folder of programs that nothing else marks; see `core.language.BackupOpener.programs_in`.
+
+    That of a ``$config.dat`` where programs are in it or below, the outermost one first; else what
+    holds all programs.
+    """
+    programs = [name for name in names if name.casefold().endswith(_PROGRAMS)]
+    if not programs:
+        return None
+    beside = {_above(name) for name in names if _last(name) == CONFIG}
+    having = [one for one in beside if any(_inside(name, one) for name in programs)]
+    if having:
+        return min(having, key=_order)
+    return posixpath.commonpath([_above(name) for name in programs])
 
 
 def layout_of(names: Sequence[str]) -> Layout:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .marks import of_iiqka, root_in
+from .marks import of_iiqka, programs_in, root_in
 
 if TYPE_CHECKING:
     from ....core.backup.backup import Backup
@@ -21,8 +21,8 @@ class Opener:
         return root_in(names)
 
     def programs_in(self, names: Sequence[str]) -> str | None:
-        """None: single programs are read by themselves."""
-        return None
+        """See `marks.programs_in`."""
+        return programs_in(names)
 
     def unreadable_in(self, names: Sequence[str]) -> str | None:
         """See `marks.of_iiqka`."""

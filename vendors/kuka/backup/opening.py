@@ -15,7 +15,7 @@ from .contents import Contents
 from .declared import Declared, declared_in, machines_of
 from .figures import motion_figures
 from .identity import identity_of
-from .marks import CONFIG, MACHINE, of_vkrc, root_in
+from .marks import CONFIG, MACHINE, of_vkrc, programs_in, root_in
 from .signals import signals_in
 from .tasks import source_files, tasks_of
 
@@ -26,10 +26,10 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
     """The archive in a folder; see `BackupOpener.open`."""
     notes = BackupNotes()
     contents = Contents(root, notes)
-    if root_in(contents.names) is None:
+    if root_in(contents.names) is None and programs_in(contents.names) is None:
         raise InputError(
-            f"{source}: no archive of a KUKA controller: no folder R1 or STEU with data lists "
-            f"or programs, and no {MACHINE}, is in it"
+            f"{source}: no archive of a KUKA controller: no folder R1 or STEU with data lists, no "
+            f"program, and no {MACHINE}, is in it"
         )
     layout = contents.layout
     if of_vkrc(contents.names, layout):

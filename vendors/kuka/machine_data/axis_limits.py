@@ -20,6 +20,8 @@ from ..data_list import DataList, numbers_of
 from .geometry import AXES, LINEAR
 
 RULE = "$AXIS_JERK · $DEF_FLT_PTP / 20, inferred"
+RULE_SPREAD = 1.07
+"""Factor by which it is off at most, of the three arms of which accelerations are published."""
 RULE_C2 = "full speed within $RAISE_TIME"
 
 

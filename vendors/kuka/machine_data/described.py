@@ -16,7 +16,14 @@ from ....core.robot.shape import LinkShape
 from ....core.spatial.pose import IDENTITY, Pose
 from ..data_list import DataList
 from .assumed import starting_times
-from .axis_limits import AxisLimits, acceleration_rule, axis_limits, axis_name
+from .axis_limits import (
+    RULE,
+    RULE_SPREAD,
+    AxisLimits,
+    acceleration_rule,
+    axis_limits,
+    axis_name,
+)
 from .external_axes import external_axes
 from .filters import filters
 from .geometry import AXES, ArmGeometry, frame, geometry
@@ -270,6 +277,8 @@ def _said(robot: Robot, data: DataList, limits: Sequence[AxisLimits]) -> Robot:
         rule = acceleration_rule(data)
         origins["acceleration"] = f"computed: {Path(data.name).name} of its controller ({rule})"
         spread.pop("acceleration", None)
+        if rule == RULE:
+            spread["acceleration"] = RULE_SPREAD
     elif "acceleration" not in origins:
         origins["acceleration"] = (
             "assumed: times to top speed of 39 arms of the maker, by payload and reach "

@@ -21,7 +21,7 @@ _LIST = Path(__file__).parent.parent / "data" / "arms.jsonl"
 _SHORTEST = 2
 """Characters of a name with a number in it."""
 _MOUNTING = re.compile(r"\b(c[245]\w*|sr|flr|clg|wll|wall|floor|ceiling|zh\d*)\b")
-_PAYLOAD = re.compile(r"kr\s*(\d+(?:\.\d+)?)", re.IGNORECASE)
+_PAYLOAD = re.compile(r"kr[\s_-]*(\d+(?:\.\d+)?)(?:[\s_-]*L(\d+(?:\.\d+)?))?", re.IGNORECASE)
 APART = 1e-3
 """m by which the flange of the same type may be apart, as published lengths are rounded."""
 
@@ -111,11 +111,11 @@ def apart(one: Robot, other: Robot) -> float:
 
 
 def payload_of_name(names: Iterable[str]) -> float | None:
-    """kg that a model's name states: KR 210 carries 210 kg."""
+    """kg that a model's name states: KR 210 carries 210 kg, its longer KR 210 L180 180 kg."""
     for name in names:
         found = _PAYLOAD.search(name)
-        if found is not None and 0.0 < float(found[1]) < 5000.0:
-            return float(found[1])
+        if found is not None and 0.0 < (mass := float(found[2] or found[1])) < 5000.0:
+            return mass
     return None
 
 

@@ -17,6 +17,7 @@ from flyby.core.robot.kinematics.chain_kernels import poses
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
 from flyby.vendors.kuka.data_list import DataList, numbers_of
 from flyby.vendors.kuka.machine_data import robot_of
+from flyby.vendors.kuka.machine_data.named_arms import payload_of_name
 
 from .data_lists import external_axis, machine_data, older, robcor, write
 
@@ -175,6 +176,21 @@ def test_a_name_of_another_arm_is_said(tmp_path) -> None:
     robot = robot_of(write(tmp_path, "$machine.dat", text))
     assert robot.name == "kuka/kr120r2700-2"
     assert any("KR 120 R2700-2, whose flange" in doubt for doubt in robot.doubts)
+
+
+@pytest.mark.parametrize(
+    ("name", "mass"),
+    [
+        ("#KR210 L180 C2 FLR", 180.0),
+        ("#KR30L16_2 C4 FLR", 16.0),
+        ("KR 6 R900 sixx", 6.0),
+        ("KR_16_LW", 16.0),
+        ("robot", None),
+    ],
+)
+def test_the_load_that_a_name_states(name: str, mass: float | None) -> None:
+    """A longer arm of a type carries less, as its name says."""
+    assert payload_of_name(["cell", name]) == mass
 
 
 def test_a_file_without_a_name_or_a_load(tmp_path) -> None:

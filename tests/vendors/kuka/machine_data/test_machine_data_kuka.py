@@ -45,7 +45,7 @@ def test_ranges_speeds_and_accelerations(tmp_path) -> None:
         assert joint.placement == nominal.placement
     assert "$machine.dat" in robot.origins["velocity"]
     assert robot.origins["geometry"] == KR3.origins["geometry"]
-    assert not robot.spread
+    assert robot.spread == {"acceleration": 1.07}  # it is inferred
 
 
 def test_filters_of_set_points_are_averages(tmp_path) -> None:
