@@ -52,12 +52,14 @@ class BackupRobot:
         robot: the arm with the backup's own figures (ranges, base, external axes), each group with
             its origin; None if flyby does not know the arm.
         lacks: what is not known of it, and what to do; empty if nothing is.
+        stated: what programs may ask of it, by the call in lower case, in the program's units.
     """
 
     unit: str
     written: str
     robot: Robot | None
     lacks: tuple[str, ...] = ()
+    stated: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

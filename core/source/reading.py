@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..display import counted, in_line
 from ..door import spelt
-from ..errors import FlybyError, Note, SourceError
+from ..errors import FlybyError, Note, OptionError, SourceError
 from ..program.question import QuestionKind
 from .execution.answers import Answers, stands_in
 from .execution.course import AnswerError
@@ -49,6 +49,9 @@ class ReadOptions:
             says so: ``"digital input"``.
         start: where the robot stands before the first move; None if nobody knows. What the program
             asks of its own position begins there.
+
+    Raises:
+        OptionError: the answers are none.
     """
 
     entry: str | None = None
@@ -60,6 +63,13 @@ class ReadOptions:
     executed: Executed | None = field(default=None, repr=False, compare=False)
     start: JointTarget | None = None
     signals: Mapping[str, str] = field(default_factory=dict, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.answers, Answers):
+            raise OptionError(
+                f"answers are Answers, not {type(self.answers).__name__}: values by their keys are "
+                'Answers({"dostart": 1.0})'
+            )
 
 
 @dataclass(frozen=True)

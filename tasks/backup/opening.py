@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
@@ -189,9 +189,18 @@ def read_task(
     vendor = registry().find_vendor(backup.vendor) if setup is None else setup.vendor
     robot = None if setup is None else setup.robot
     signals = {signal.name.lower(): signal.kind.value for signal in backup.signals}
+    answers = replace(answers, stated=_stated(backup, task, robot))
     return vendor.read_file(
         backup.root / file, entry, robot, answers, others, start, beside, signals
     )
+
+
+def _stated(backup: Backup, task: Task, robot: Robot | None) -> Mapping[str, float]:
+    """What programs may ask of the arm of a task, unless another one is driven."""
+    known = None if task.robot is None else backup.robots[task.robot]
+    if known is None or (robot and known.robot and robot.name != known.robot.name):
+        return {}
+    return known.stated
 
 
 def _which_routine(backup: Backup, task: Task, entry: str | None) -> InputError:

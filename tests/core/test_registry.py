@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from flyby.core import registry as registry_module
-from flyby.core.errors import InputError, UnknownNameError
+from flyby.core.errors import InputError, OptionError, UnknownNameError
 from flyby.core.hookspec import VendorRegister, hookimpl
 from flyby.core.plugins.loading import BrokenPlugin
 from flyby.core.program.program import Program
@@ -285,6 +285,8 @@ def test_language_parts_are_reached_through_the_vendor() -> None:
     assert one.write(program, robots[0]) == {"main.txt": "p acme/arm-1 {}"}
     options = {"style": "terse"}
     assert one.write(program, robots[0], options) == {"main.txt": f"p acme/arm-1 {options}"}
+    with pytest.raises(OptionError, match=r"answers are Answers, not dict: .*Answers\("):
+        one.read_file("a.txt", answers={"di": 1})  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"acme/arm-2: it speaks another language.*emulated"):
         one.write(program, robots[1])
     with pytest.raises(InputError, match=r"acme/arm-2: it speaks another language.*emulated"):

@@ -45,6 +45,8 @@ class Answers:
         signals: what signals are called on other robots; a reader does not ask for them.
         cut: why loops are left before their end, as they go on for more moves than are read; empty
             of a loop that has none, in which the program ends.
+        stated: what the program asks of its own controller, and a backup of that states; values
+            count before it.
     """
 
     values: Mapping[str, Answer] = field(default_factory=dict)
@@ -60,6 +62,7 @@ class Answers:
     signals: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)
     cut: Mapping[str, str] = field(default_factory=dict)
+    stated: Mapping[str, float] = field(default_factory=dict)
 
     def names(self, table: str) -> Iterable[str]:
         """What a table of the file has answers to, in their order."""

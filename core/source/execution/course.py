@@ -108,6 +108,10 @@ class Course:
             self._asked.add(("values", name))
         return self.answers.values.get(name)
 
+    def stated(self, text: str) -> float | None:
+        """What the controller is known to say to a call; None if that is not known."""
+        return self.answers.stated.get(key(text))
+
     def used_as(self, text: str, type_: str, example: Answer) -> None:
         """What was asked turns out to be of a type, as it is used so.
 

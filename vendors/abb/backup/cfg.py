@@ -188,3 +188,8 @@ def _values(line: str) -> dict[str, str]:
             before = values[attribute]
             values[attribute] = f"{before} {value}" if before else value
     return values
+
+
+def folded(name: str) -> str:
+    """``ROB_1`` and ``rob1`` are one robot; its first joint is ``rob1_1``."""
+    return name.casefold().replace("_", "")

@@ -24,8 +24,9 @@ from ....core.robot.seven_axes.arm_angle import AXES
 from ....core.spatial.pose import IDENTITY, Pose
 from ....core.spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
 from .arms import FindRobot, agreeing, find_arm
-from .cfg import Parameters, Record
+from .cfg import Parameters, Record, folded
 from .external_axes import Unit, base_frame, conveyors, units_of
+from .planner import stated_speeds
 
 _SAME = 1e-3
 """rad, m/s² by which numbers may differ that are rounded in a file."""
@@ -84,9 +85,9 @@ def mechanics_of(
             f"conveyors are not driven: {listed(conveyors(moc))}; what lies on one is taken to "
             "stand still"
         )
-    own = {f"{_folded(arm.name)}{AXES}" for arm in arms}
+    own = {f"{folded(arm.name)}{AXES}" for arm in arms}
     carrying = {(arm.text("base_frame_coordinated") or "").casefold() for arm in arms} - {""}
-    units = [unit for unit in units_of(moc, carrying) if _folded(unit.single.name) not in own]
+    units = [unit for unit in units_of(moc, carrying) if folded(unit.single.name) not in own]
     owned = {arm.name: _own(arm, units, groups, len(arms) == 1) for arm in arms}
     robots = tuple(_robot(moc, arm, products, owned[arm.name], find_robot, notes) for arm in arms)
     taken = {unit.name for own in owned.values() for unit in own}
@@ -156,7 +157,8 @@ def _robot(
     lacks += _arm_loads(moc, arm)
     if robot.arm_angle_reference is not None:
         lacks += _reference(arm)
-    return BackupRobot(arm.name, written, _calibrated(robot, arm), tuple(lacks))
+    stated = stated_speeds(moc, arm.name)
+    return BackupRobot(arm.name, written, _calibrated(robot, arm), tuple(lacks), stated)
 
 
 def _assumed(robot: Robot) -> list[str]:
@@ -245,7 +247,7 @@ def _partly(stated: int, joints: int) -> str:
 def _arm_record(moc: Parameters, arm: Record, index: int) -> Record | None:
     """The ARM of a joint, counted from zero: by the robot's joints, or by its name."""
     used = arm.numbered("use_joint_")
-    by_name = f"{_folded(arm.name)}{index + 1}"
+    by_name = f"{folded(arm.name)}{index + 1}"
     name = used[index] if index < len(used) else None
     joint = moc.named("JOINT", name) or _alike(moc, "JOINT", by_name)
     found = None
@@ -254,13 +256,8 @@ def _arm_record(moc: Parameters, arm: Record, index: int) -> Record | None:
     return found or moc.named("ARM", name) or _alike(moc, "ARM", by_name)
 
 
-def _alike(moc: Parameters, section: str, folded: str) -> Record | None:
-    return next((one for one in moc.section(section) if _folded(one.name) == folded), None)
-
-
-def _folded(name: str) -> str:
-    """``ROB_1`` and ``rob1`` are one robot; its first joint is ``rob1_1``."""
-    return name.casefold().replace("_", "")
+def _alike(moc: Parameters, section: str, name: str) -> Record | None:
+    return next((one for one in moc.section(section) if folded(one.name) == name), None)
 
 
 def _ranged(joint: Joint, record: Record, notes: BackupNotes) -> Joint:

@@ -189,7 +189,9 @@ def _note_add_ins(sys: Parameters, contents: Contents, notes: BackupNotes) -> No
             absent.append(name)
     if absent:
         names = listed(dict.fromkeys(absent))
-        notes.add(f"SYS.cfg loads modules of add-ins that are not in the backup: {names}")
+        notes.add(
+            f"SYS.cfg loads modules that are not in the backup (of add-ins, or of HOME): {names}"
+        )
 
 
 def _first(notes: BackupNotes) -> str:

@@ -2,16 +2,18 @@
 
 Of how a controller drives, a backup states next to nothing that has a name in the motion model:
 its period follows from the queue times of MOTION_PLANNER. The cap of the TCP's speed
-(``linear_max_speed``) is beyond what arms reach on lines; it is noted where it is low.
+(``linear_max_speed``) is beyond what arms reach on lines; it is noted where it is low, and programs
+ask for it (`MaxRobSpeed()`).
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from ....core.backup.contents import BackupNotes
 from ....core.errors import InputError
-from .cfg import Parameters, Record
+from .cfg import Parameters, Record, folded
 
 _PERIODS = (0.004032, 0.004)
 """s: the one that queue times of all backups seen are whole multiples of, and the catalogue's."""
@@ -31,6 +33,34 @@ def motion_figures(moc: Parameters, notes: BackupNotes) -> dict[str, tuple[Any, 
             origin = f"{planners[0].place}: queue times {what} s are whole multiples of it"
             return {"period_s": (period, f"assumed: {origin}")}
     return {}
+
+
+_ASKED = {
+    "maxrobspeed()": ("linear_max_speed", 1000.0),
+    "maxrobreorientspeed()": ("reorient_max_speed", 1.0),
+}
+"""Calls of programs, with what is said to them (m/s, degrees/s), and by what it is multiplied."""
+
+
+def stated_speeds(moc: Parameters, arm: str) -> dict[str, float]:
+    """What programs may ask of an arm of this name; see `BackupRobot.stated`.
+
+    Of several planners it is that which supervises the arm.
+    """
+    planners = moc.section("MOTION_PLANNER")
+    own = [one for one in planners if folded(one.text("use_motion_sup") or "") == folded(arm)]
+    found: dict[str, float] = {}
+    if len(own) != 1 and len(planners) != 1:
+        return found
+    for planner in own or planners:
+        for call, (key, unit) in _ASKED.items():
+            try:
+                value = planner.number(key)
+            except InputError:
+                continue
+            if value is not None and 0.0 < value < math.inf:
+                found[call] = unit * value
+    return found
 
 
 def _queue_times(planner: Record) -> list[float]:

@@ -119,6 +119,10 @@ class TypedAnswers:
         """
         return self.ask_by(self.key(span), span, type_, sizes, kind)
 
+    def stated(self, call: str) -> float | None:
+        """What the controller is known to say to a call; None if that is not known."""
+        return self._course.stated(call)
+
     def ask_by(
         self,
         key: str,

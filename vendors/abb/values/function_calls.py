@@ -114,6 +114,10 @@ def _value(
             answer = evaluator.answers.ask(call.span, None)
             return IN_PRODUCTION[call.name] if answer is None else answer
         if call.name in OF_THE_ARM:
+            stated = evaluator.answers.stated(f"{call.name}()")
+            if stated is not None:
+                answer = evaluator.answers.ask(call.span, NUM)
+                return stated if answer is None else answer
             return Unknown(
                 f"what {call.text}() is of this arm",
                 call.span,

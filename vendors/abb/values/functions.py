@@ -248,9 +248,14 @@ STATE: dict[str, Type | None] = {
 """Functions that ask the controller, the operator or the outside world, with the type of their
 values, None where nothing is known of it. They move nothing."""
 
-OF_THE_ARM: dict[str, float] = {"maxrobspeed": VMAX[0]}
-"""Functions whose value differs from arm to arm, with what stands in for it: no arm goes faster.
-Shares of it are too fast then, so that it is asked for."""
+OF_THE_ARM: dict[str, float] = {
+    "maxrobspeed": VMAX[0],
+    "maxrobreorientspeed": VMAX[1],
+    "maxextlinearspeed": VMAX[2],
+    "maxextreorientspeed": VMAX[3],
+}
+"""Functions whose value differs from arm to arm, with what stands in for it. No arm's TCP goes
+faster: shares of it are too fast then, so that it is asked for unless a backup states it."""
 
 _RUN_CONT_CYCLE, _OP_AUTO = 1.0, 1.0
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +16,12 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.program import Program
 from flyby.core.program.tool import Load
 from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.execution.answers import Answers
+from flyby.vendors.abb.backup.cfg import parse_parameters
 from flyby.vendors.abb.backup.opener import OPENER
+from flyby.vendors.abb.backup.planner import stated_speeds
 
-from .station import MAIN, USER, Station, multimove, on_track, one_robot
+from .station import MAIN, USER, Station, cfg, multimove, on_track, one_robot
 
 ABB = find_vendor("abb")
 
@@ -233,6 +238,42 @@ def test_gravity_that_contradicts_the_base_is_said(tmp_path: Path) -> None:
     assert robot.gravity == pytest.approx((0.0, 0.0, 9.80665), abs=1e-4)
     (note,) = texts(backup)
     assert "180° off a level floor" in note
+
+
+def test_how_fast_the_arm_is_is_what_its_backup_states(tmp_path: Path) -> None:
+    asking = MAIN.replace("PROC Main()", "VAR speeddata vShare:=v100;\n  PROC Main()", 1).replace(
+        "    Pick;\n",
+        "    vShare.v_tcp:=MaxRobSpeed()/2;\n    vShare.v_ori:=MaxRobReorientSpeed();\n"
+        "    MoveL p10, vShare, fine, tGripper\\WObj:=wTable;\n",
+        1,
+    )
+    tasks = {"TASK1": ("T_ROB1", {"PROGMOD/MainModule.mod": asking, "SYSMOD/user.sys": USER})}
+    own = "-linear_max_speed 7.2 "
+    moc = one_robot()
+    moc["MOTION_PLANNER"] = [
+        moc["MOTION_PLANNER"][0].replace(own, f"{own}-reorient_max_speed 900 ")
+    ]
+    root = Station(tasks=tasks, moc=moc).write(tmp_path)
+
+    def share(**options: Any) -> tuple[float, float]:
+        moves = flyby.read(root, **options).moves
+        speed = moves[-1].speed
+        return round(speed.tcp or 0.0, 6), round(math.degrees(speed.reorientation or 0.0), 3)
+
+    assert share() == (3.6, 900.0)
+    assert not any("MaxRob" in str(one) for one in flyby.read(root).questions)
+    assert share(answers=Answers({"maxrobspeed()": 6000.0})) == (3.0, 900.0)
+    assert share(robot="abb/irb4600-60-205") == (5.0, 500.0)
+
+
+def test_of_several_planners_that_of_the_arm_is_asked() -> None:
+    planners = [
+        '-name "p1" -linear_max_speed 6 -use_motion_sup "rob1"',
+        '-name "p2" -linear_max_speed 7 -use_motion_sup "rob2"',
+    ]
+    moc = parse_parameters(cfg("MOC", {"MOTION_PLANNER": planners}), "MOC.cfg")
+    assert stated_speeds(moc, "ROB_2") == {"maxrobspeed()": 7000.0}
+    assert stated_speeds(moc, "ROB_3") == {}
 
 
 def test_signals_of_the_backup_are_called_so(tmp_path: Path) -> None:
