@@ -10,7 +10,7 @@ author writes down, in a TOML file, texts as controllers run them beside what th
     lower_deg = [-170, -90, -120, -180, -120, -350]
     upper_deg = [170, 120, 120, 180, 120, 350]
     velocity_deg_s = [200, 200, 260, 360, 360, 450]
-    poses = [{ joints_deg = [0, 0, 0, 0, 0, 0], position_mm = [815, 0, 1186.5] }]
+    poses = [{ joints_deg = [30, -20, 15, 40, -35, 60], position_mm = […], quaternion = […] }]
 
     [[texts]]
     about = "a joint move, and a line beside an output"

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 import pytest
 
+from ...core.arrays import FloatArray
 from ...core.errors import FaultCause, FlybyError, PluginFault
 from ...core.language import Reader
 from ...core.motion.emulator.controller import Controller
@@ -20,12 +22,13 @@ from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE
 from ...core.program.zone import kind_word, zone_word
+from ...core.robot.model import Robot
 from ...core.source.lines.driving import MotionGrammar
 from ...core.source.lines.forms import FormGrammar
 from ...core.source.lines.language import LineLanguage
 from ...core.source.lines.settings import Setting
 from ...core.source.write.options import OpaqueStyle
-from ...core.spatial.pose import IDENTITY
+from ...core.spatial.pose import IDENTITY, Pose
 from ..golden import LANGUAGE, GoldenText, differences, terms_of
 from .subject import Subject
 from .telling import line_of, text_of, told
@@ -118,7 +121,7 @@ class GoldenChecks(Subject):
                     look="stands",
                 )
 
-    def test_robots_are_those_of_their_data_sheets(self) -> None:
+    def test_golden_robots_are_those_of_their_data_sheets(self) -> None:
         for one in self.golden_robots:
             robot = self.vendor.robot(one.name)
             for term in ("lower", "upper", "velocity"):
@@ -133,16 +136,31 @@ class GoldenChecks(Subject):
                     look="the robot's file: ranges and speeds, joint by joint",
                 )
             for pose in one.numbers["poses"]:
-                q = np.array([*pose["joints"], *[0.0] * (robot.size - robot.arm_size)])
-                flange = robot.flange_pose(q)
-                place = np.abs(np.subtract(flange.position, pose["position"])).max()
-                turn = abs(np.dot(flange.quaternion, pose.get("quaternion", flange.quaternion)))
-                assert place < _PLACE and turn > 1 - _PLACE**2, told(
+                flange = robot.flange_pose(_joints_at(robot, pose))
+                assert _stands(flange, pose), told(
                     f"{one.name}: the flange stands elsewhere at {np.degrees(pose['joints'])}°",
                     written=f"{pose['position']} m, {pose.get('quaternion', '')} by the author",
                     read=f"{flange.position} m, {flange.quaternion}",
                     look="the robot's file: lengths, senses and zeros of joints, the flange",
                 )
+
+    def test_golden_poses_show_which_way_each_joint_counts(self) -> None:
+        """A joint that counted the other way would put the flange elsewhere in one of them."""
+        for one in self.golden_robots:
+            robot, poses = self.vendor.robot(one.name), one.numbers["poses"]
+            unseen = []
+            for index, joint in enumerate(robot.joints[: robot.arm_size]):
+                sense = np.ones(robot.size)
+                sense[index] = -1.0
+                others = (robot.flange_pose(sense * _joints_at(robot, pose)) for pose in poses)
+                if not joint.held and all(map(_stands, others, poses)):
+                    unseen.append(joint.name or str(index + 1))
+            assert not unseen, told(
+                f"{one.name}: the flange stands at each of its poses where it would if "
+                f"{', '.join(unseen)} counted the other way",
+                look="[[robots]] of the golden file: a pose with its quaternion, each joint of "
+                "which is at another angle, and none at 0",
+            )
 
     def test_golden_texts_cover_the_language(self) -> None:
         """What no golden text says, no check compares with what its author knows."""
@@ -357,6 +375,18 @@ def _seen(text: GoldenText, program: Program) -> Iterator[str]:
             yield _OWNED.get(statement.origin.target.ownership, "datum of its own")
     if any(row.get("not_driven") for row in text.statements):
         yield "code that is not driven"
+
+
+def _joints_at(robot: Robot, pose: Mapping[str, Any]) -> FloatArray:
+    """All axes at a pose of a data sheet."""
+    return np.array([*pose["joints"], *[0.0] * (robot.size - robot.arm_size)])
+
+
+def _stands(flange: Pose, pose: Mapping[str, Any]) -> bool:
+    """Whether a flange is where a data sheet has it."""
+    place = np.abs(np.subtract(flange.position, pose["position"])).max()
+    turn = abs(np.dot(flange.quaternion, pose.get("quaternion", flange.quaternion)))
+    return bool(place < _PLACE and turn > 1 - _PLACE**2)
 
 
 def _place(text: GoldenText, number: int, statement: Statement) -> str:

@@ -13,7 +13,7 @@ from ..checks.subject import Subject
 from .mutant import Mutant, has
 from .wrapping import Plant
 
-SHEETS = ("test_robots_are_those_of_their_data_sheets",)
+SHEETS = ("test_golden_robots_are_those_of_their_data_sheets",)
 STANDS = ("test_golden_moves_stand_where_their_author_says",)
 
 
@@ -66,6 +66,11 @@ def _has_sheets(suite: Subject) -> bool:
     return bool(suite.golden_robots)
 
 
+def _has_wrists(suite: Subject) -> bool:
+    arms = [suite.vendor.robot(one.name) for one in suite.golden_robots]
+    return bool(arms) and all(arm.arm_size >= 6 for arm in arms)
+
+
 MUTANTS = (
     Mutant(
         "joints faster than they are",
@@ -81,6 +86,8 @@ MUTANTS = (
     ),
     Mutant("an arm 10 mm longer", _joint(2, _longer), SHEETS, _has_sheets),
     Mutant("a joint counts the other way", _joint(1, _reversed), SHEETS, _has_sheets),
+    Mutant("a joint of the wrist counts the other way", _joint(3, _reversed), SHEETS, _has_wrists),
+    Mutant("the last joint counts the other way", _joint(5, _reversed), SHEETS, _has_wrists),
     Mutant("a flange turned by half a turn", _robots(_unturned_flange), SHEETS, _has_sheets),
     Mutant("labels of another posture", _mirrored_label, STANDS, has("configuration")),
     Mutant(

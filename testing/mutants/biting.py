@@ -120,6 +120,10 @@ BITING: Mapping[str, str] = {
     "ranges of joints wider": _SHEET + "lower_deg and upper_deg",
     "an arm 10 mm longer": _SHEET + "poses = [{ joints_deg = …, position_mm = … }]",
     "a joint counts the other way": _SHEET + "a pose at which the second joint is not at zero",
+    "a joint of the wrist counts the other way": _SHEET + "a pose with its quaternion at which the "
+    "fourth joint is not at zero",
+    "the last joint counts the other way": _SHEET + "a pose with its quaternion at which the sixth "
+    "joint is not at zero",
     "a flange turned by half a turn": _SHEET + "a pose with its quaternion",
     "labels of another posture": "a pose with a configuration and stands_deg, in a text that names "
     "its robot",

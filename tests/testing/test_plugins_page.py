@@ -91,7 +91,8 @@ def test_the_golden_texts_of_the_page_are_what_its_plugin_reads(
     suite.golden = tmp_path / "golden.toml"
     suite.test_golden_texts_mean_what_their_author_says()
     suite.test_golden_moves_stand_where_their_author_says()
-    suite.test_robots_are_those_of_their_data_sheets()
+    suite.test_golden_robots_are_those_of_their_data_sheets()
+    suite.test_golden_poses_show_which_way_each_joint_counts()
     suite.test_golden_texts_cover_the_language()
     (tmp_path / "golden.toml").write_text(golden.replace("0.25 }", "0.2 }"), "utf-8")
     suite = Suite()

@@ -59,6 +59,18 @@ def suite(made: Any, tmp_path: Path) -> Callable[[str, str], VendorConformance]:
     return suite
 
 
+def test_joints_whose_sign_no_pose_shows_are_named(suite: Any) -> None:
+    check = "test_golden_poses_show_which_way_each_joint_counts"
+    getattr(suite("none", "none"), check)()
+    turned = ", quaternion = [0.4812856, 0.3888906, 0.3069376, 0.7231304]"
+    with pytest.raises(AssertionError, match="would if A6 counted the other way"):
+        getattr(suite(turned, ""), check)()
+    place = "[318.2711, 149.696, 889.5726]"
+    whole = f"  {{ joints_deg = [30, -20, 15, 40, -35, 60], position_mm = {place}{turned} }},\n"
+    with pytest.raises(AssertionError, match="would if A1, A4, A6 counted the other way"):
+        getattr(suite(whole, ""), check)()
+
+
 def test_a_form_that_no_golden_text_has_is_named(suite: Any) -> None:
     suite("none", "none").test_every_form_of_line_counts_in_a_golden_text()
     row = '[[texts.statements]]\nkind = "Wait"\nduration_s = 0.25\n'
