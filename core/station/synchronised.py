@@ -22,7 +22,7 @@ from ..motion.emulator.run import Run
 from ..program.program import Program
 from ..program.signal import Meet
 from ..program.zone import Fine
-from .actions import Action, MeetingPoint
+from .actions import Action, MeetingPoint, stand_of
 from .pace import ClockPace
 
 IdOf = Callable[[int], str | None]
@@ -160,14 +160,22 @@ def synchronised(
             robots = [_Progress.of(runs[move.robot], move.index) for move in moves]
             made = _in_step(robots) if in_step else _stretched(robots)
             # On the way through a zone nothing can be waited for, nor is it told when it is passed.
-            stand = all(_stands(runs[move.robot], move.index) for move in moves)
-            for move, span in zip(moves, made, strict=True):
-                spans[move.robot][move.index] = span
+            stand, end = (
+                all(_stands(runs[move.robot], move.index + more) for move in moves)
+                for more in (0, 1)
+            )
+            for move, robot, span in zip(moves, robots, made, strict=True):
+                # Who goes nowhere waits at the end for those that come there, where all stop.
+                if len(robot.share) or not end:
+                    spans[move.robot][move.index] = span
                 if not stand:
                     continue
                 meet = Meet(f"{each.label} {each.nth} {move.name} {k}")
                 text = f"moves together, {move.name}"
                 begin = float(span[0][0])
+                if not len(robot.share):
+                    # It leads nowhere; what comes behind it counts from when the robot stands.
+                    begin = stand_of(runs[move.robot], move.index, -1).at
                 meets[move.robot].append(Action(meet, begin, move.index - 1, text, move.span))
     paces = {
         name: ClockPace.slower([own[index] for index in sorted(own)])
@@ -175,7 +183,7 @@ def synchronised(
         if own
     }
     made_actions = {
-        name: tuple(sorted((*doings, *meets[name]), key=lambda action: action.time))
+        name: tuple(sorted((*doings, *meets[name]), key=lambda action: (action.time, action.move)))
         for name, doings in actions.items()
     }
     notes = (

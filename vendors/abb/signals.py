@@ -104,13 +104,13 @@ def meets(text: str) -> Meet | None:
     return Meet(found["label"].casefold(), coordinated=found["word"].casefold() == "syncmoveon")
 
 
-_ID = re.compile(r"\\ID\s*:=\s*(\w+)", re.IGNORECASE)
+_ID = re.compile(r"\\ID\s*:=\s*([^\\,;]+)", re.IGNORECASE)
 
 
 def together(text: str) -> str | None:
     r"""The ``\ID`` of a move that other tasks make at the same time."""
     found = _ID.search(text)
-    return None if found is None else found[1].casefold()
+    return None if found is None else "".join(found[1].split()).casefold()
 
 
 def event(text: str) -> str:

@@ -139,13 +139,9 @@ class MoveArguments:
             not arm_stays and "noeoffs" not in self.bound.options
         )
         self._refuse_lost(*(("offsets",) if offsets else ()))
-        target = self.run.convert.joint_target(
-            self._with_arm(found.value) if arm_stays else found.value,
-            name,
-            offsets,
-            expression.span,
-        )
-        self.record = _record(found.value)
+        value = self._with_arm(found.value) if arm_stays else found.value
+        target = self.run.convert.joint_target(value, name, offsets, expression.span)
+        self.record = _record(value)
         moved = arm_stays or (offsets and self.run.settings.now.offsets is not None)
         return target, _part_of(expression.span, None if moved else found.source)
 

@@ -1,0 +1,78 @@
+"""Stations of programs as they are found: read, run on one clock, and written back."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import flyby
+from flyby.core.program.program import Program
+from flyby.core.program.target import PoseTarget
+from flyby.core.source.patch.edits import difference
+from flyby.core.source.reading import Reading
+from flyby.tasks.results.stations import DrivenStation
+from flyby.tasks.setup import setup_of_program
+
+ROOT = Path(__file__).parents[2] / "corpus" / "stations"
+STATIONS = {"multimove": ("rob1", "rob2", "stn1"), "roboteam": ("R1", "R2")}
+ROBOTS = [(name, robot) for name, robots in STATIONS.items() for robot in robots]
+SYNC = re.compile(rb"^.*(?:Sync|\\ID|PROGSYNC).*$", re.MULTILINE | re.IGNORECASE)
+
+
+@cache
+def driven(name: str) -> DrivenStation:
+    return flyby.station(ROOT / name / "station.toml")
+
+
+@cache
+def program(name: str, robot: str) -> Program:
+    said = tomllib.loads((ROOT / name / "station.toml").read_text())["robot"][robot]
+    return flyby.read(ROOT / name / said["program"], cell=ROOT / name / said["cell"])
+
+
+@pytest.mark.parametrize(
+    ("name", "together", "seconds"), [("multimove", [6], 6.71), ("roboteam", [1, 1, 1], 4.92)]
+)
+def test_they_run_on_one_clock_proven(name: str, together: list[int], seconds: float) -> None:
+    made = driven(name)
+    assert made.deadlock is None and not made.may_lock and made.clear
+    assert all(pair.any_time.proven for pair in made.clearances)
+    said = [re.search(r"make (\d+) moves? together", str(note)) for note in made.notes]
+    assert [int(found[1]) for found in said if found is not None] == together
+    assert made.duration == pytest.approx(seconds, rel=0.02)
+
+
+def test_who_goes_nowhere_holds_nobody_up() -> None:
+    r"""The table stands in its first and last \ID: the welders wait for nothing but each other."""
+    waits = [spell for name, spell in driven("multimove").waits() if name == "rob1"]
+    assert not [spell for spell in waits if "ID" in spell.action.text]
+
+
+@pytest.mark.parametrize(("name", "robot"), ROBOTS)
+def test_they_are_written_back_with_all_that_joins_them(name: str, robot: str) -> None:
+    read = program(name, robot)
+    reading, setup = read.reading, setup_of_program(read)
+    assert isinstance(reading, Reading)
+    assert not setup.vendor.patch(read, setup.robot)
+    moves = list(read.moves)
+    k = next((i for i, m in enumerate(moves) if isinstance(m.target, PoseTarget)), len(moves) - 1)
+    target = moves[k].target
+    if isinstance(target, PoseTarget):
+        x, y, z = target.pose.position
+        target = replace(target, pose=replace(target.pose, position=(x, y, z + 1e-3)))
+    else:
+        target = replace(target, external=(target.external[0] - 0.01,))
+    moves[k] = replace(moves[k], target=target)
+    after = read.with_moves(tuple(moves))
+    own = {"derived": "own", "shared": "own"}
+    patched = setup.vendor.patch(after, setup.robot, own)
+    files = {one.name: one for one in patched.values()}
+    assert files and difference(after, reading.again(files)) is None
+    for file, text in files.items():
+        old, new = reading.files[file].data, text.data
+        assert old != new and SYNC.findall(old) == SYNC.findall(new)
