@@ -17,14 +17,15 @@ from .parameters import AsJson, Force, PageFile, with_options
 if TYPE_CHECKING:
     from ..tasks.results.stations import DrivenStation
 
-StationFile = Annotated[
-    Path, typer.Argument(help="Station file (TOML), or a backup of several robots.")
+StationFiles = Annotated[
+    list[Path],
+    typer.Argument(help="Station file (TOML), or backups: one of several robots, or several."),
 ]
 
 
 @with_options
 def station(
-    file: StationFile,
+    files: StationFiles,
     options: StationOptions,
     plot: Annotated[
         Path | None,
@@ -41,10 +42,10 @@ def station(
     """
     if plot is not None:
         picture_kind(plot, "--plot")
-    check_outputs({"--plot": plot}, [file], replace_existing=force)
-    check_page(report, [file], force)
+    check_outputs({"--plot": plot}, files, replace_existing=force)
+    check_page(report, files, force)
     with progress("reading the station") as say:
-        made = station_with(file, replace(options, report=say))
+        made = station_with(files, replace(options, report=say))
         if plot is not None:
             write_all("--plot", {plot: made.picture(picture_kind(plot, "--plot"))})
         written = write_page(report, made)

@@ -46,7 +46,7 @@ def bare_cell(robot: Robot, vendor: str, tools: Iterable[Tool] = (), *, floor: b
         floor: whether there is one.
     """
     known = {tool.name: tool for tool in tools}
-    if not floor:
+    if not floor or not robot.has_arm:
         return Cell(robot, vendor, tools=known)
     held = {name: tool for name, tool in known.items() if tool.robot_held and name != FLANGE.name}
     arm = [joint.name for joint in robot.joints]

@@ -170,6 +170,17 @@ class StationProver:
         meetings, wanted = Meetings.at_any_time(), self._station.clearance
         return _worst(p.prove(wanted, meetings) for p, _ in self._variants(one, other))
 
+    @property
+    def shapeless(self) -> tuple[str, ...]:
+        """Positioners that carry nothing of which a shape is known."""
+        return tuple(
+            name
+            for name, member in self._station.members.items()
+            if not member.cell.robot.has_arm
+            and not any(obstacle.carried_by for obstacle in member.cell.obstacles)
+            and not member.cell.parts
+        )
+
     def all(
         self,
         run: StationRun,
@@ -186,7 +197,8 @@ class StationProver:
             say: told what is being done.
         """
         found = []
-        for one, other in combinations(self._station.members, 2):
+        solid = [name for name in self._station.members if name not in self.shapeless]
+        for one, other in combinations(solid, 2):
             say(f"proving that {one} and {other} keep clear of each other")
             found.append(self._pair(one, other, run, jitter, orders))
         return found

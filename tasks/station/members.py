@@ -119,22 +119,23 @@ def drive_members(
         member = read[name]
         under_way.append(name)
         try:
-            for unit in member.not_followed:
-                carrier = _owner(read, member, unit)
-                if carrier in under_way:
-                    raise InputError(
-                        f"{' and '.join(under_way)} turn what each other work on: that is not "
-                        "followed"
-                    )
-                drive(carrier)
+            carriers = {unit: _owner(read, member, unit) for unit in member.not_followed}
+            if ring := set(carriers.values()) & set(under_way):
+                raise InputError(
+                    f"it works on what {' and '.join(ring)} turns, which waits for it in turn: "
+                    "that is not followed"
+                )
+        except InputError as error:
+            raise InputError(f"{file.file}: robot.{name}: {error}") from None
+        for carrier in carriers.values():
+            drive(carrier)
+        say(f"driving {name}")
+        try:
+            for unit, carrier in carriers.items():
                 member = _following(member, unit, _carrier(read, driven, carrier), together)
-            say(f"driving {name}")
             driven[name] = _driven(member)
         except FlybyError as error:
-            message = str(error)
-            if not message.startswith(str(file.file)):
-                message = f"{file.file}: robot.{name}: {message}"
-            raise InputError(message) from error
+            raise InputError(f"{file.file}: robot.{name}: {error}") from error
         under_way.pop()
 
     for name in read:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...core.door import called
 from ...core.errors import InputError, MotionError, Note
 from ..setup import start_of
 from .members import ReadMember, drive_members, read_member
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
     from ...core.station.actions import Action
     from ...core.station.station import Driven, Passing, RobotStation, StationRobot
     from ...core.station.station_file import StationFile
+
+Sources = str | Path | Sequence[str | Path]
+"""A station file, or backups."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class OpenedStation:
     notes: tuple[Note, ...]
 
 
-def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
+def open_station(source: Sources, say: Callable[[str], None]) -> OpenedStation:
     """A station with its programs as driven, and what these do with signals.
 
     Raises:
@@ -54,11 +58,13 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     from ...core.station.synchronised import moves_together, synchronised
     from ...core.station.world_zones import on_at_start, with_zones
 
-    file = read_station_file(source) if is_station_file(source) else _of_backup(source)
+    sources = _listed(source)
+    stated = len(sources) == 1 and is_station_file(sources[0])
+    file = read_station_file(sources[0]) if stated else _of_backups(sources)
     read: dict[str, ReadMember] = {}
-    for stated in file.members:
-        say(f"reading {stated.name}")
-        read[stated.name] = read_member(stated, file)
+    for member in file.members:
+        say(f"reading {member.name}")
+        read[member.name] = read_member(member, file)
     try:
         together = moves_together(
             {name: one.program for name, one in read.items()},
@@ -119,12 +125,12 @@ def open_station(source: Path, say: Callable[[str], None]) -> OpenedStation:
     )
     check_hand_overs(station)
     check_own_parts(file, members.values())
-    if not is_station_file(source):
+    if not stated:
         notes.append(
             Note(
-                f"{source} is a backup: nobody says what joins outputs and inputs of its tasks, "
-                "and what stands around; a station file does, and may name the backup as the "
-                "program of each robot, with its task"
+                f"{file.file}: of backups nobody says what joins outputs and inputs of robots, and "
+                "what stands around; a station file does, and may name a backup as the program of "
+                "each robot, with its task"
             )
         )
     notes += [*shared.notes, *_alone(actions), *_passed(actions, members)]
@@ -136,30 +142,44 @@ def is_station_file(source: Path) -> bool:
     return source.suffix.casefold() == ".toml"
 
 
-def _of_backup(source: Path) -> StationFile:
-    """A station of the tasks of a backup that move robots; nothing joins their signals.
+def _listed(source: Sources) -> list[Path]:
+    return [Path(source)] if isinstance(source, str | Path) else list(map(Path, source))
+
+
+def _of_backups(sources: Sequence[Path]) -> StationFile:
+    """A station of the tasks of backups that move robots; nothing joins their signals.
+
+    A robot is called as its task; as its file, where that has one.
 
     Raises:
-        InputError: it is no backup, or fewer than two of its tasks move robots.
+        InputError: one is no backup, or fewer than two of their tasks move robots.
     """
     from ...core.station.station_file import MemberFile, StationFile
     from ..backup.finding import find_backup
     from ..catalogue import registry
 
-    backup = find_backup(source, registry())
-    if backup is None:
-        raise InputError(
-            f"{source}: is neither a station file (.toml) nor a backup with several robots"
-        )
-    moving = [task.name for task in backup.tasks if task.robot is not None]
-    if len(moving) < 2:
-        raise InputError(
-            f"{source}: {len(moving)} of its tasks moves a robot; a station has two robots or more"
-        )
-    members = tuple(
-        MemberFile(name, None, source, None, name, None, None, None, 0.0) for name in moving
-    )
-    return StationFile(members, (), {}, frozenset(), {}, 0.0, (), source)
+    members: list[MemberFile] = []
+    file = Path(", ".join(map(str, sources)))
+    for source in sources:
+        if is_station_file(source):
+            raise InputError(f"{source}: a station file stands for itself: give no other beside it")
+        backup = find_backup(source, registry())
+        if backup is None:
+            raise InputError(
+                f"{source}: is neither a station file (.toml) nor a backup: of programs alone "
+                "nobody says which robots drive them, and where these stand; write a station file"
+            )
+        moving = [task.name for task in backup.tasks if task.robot is not None]
+        single = len(sources) > 1 and len(moving) == 1
+        for task in moving:
+            name = source.stem if single else task
+            if name in {member.name for member in members}:
+                name = f"{source.stem} {task}"
+            members.append(MemberFile(name, None, source, None, task, None, None, None, 0.0))
+    if len(members) < 2:
+        counted = f"{len(members)} of its tasks moves a robot"
+        raise InputError(f"{file}: {counted}; a station has two robots or more")
+    return StationFile(tuple(members), (), {}, frozenset(), {}, 0.0, (), file)
 
 
 def _with_own_zones(
@@ -325,5 +345,6 @@ def _check_starts(file: StationFile, members: dict[str, StationRobot]) -> None:
                 raise InputError(
                     f"{file.file}: {one} and {other} stand at one place: their cells put both "
                     f"bases at {1e3 * places[one].round(4)} mm in the world; say in each cell "
-                    "where its robot stands ([base])"
+                    "where its robot stands (base); of backups, write a station file that names a "
+                    f"cell for each, as {called('import')} writes it"
                 )

@@ -26,6 +26,11 @@ _UNSURE = (
     "no more is proven than at any time"
 )
 
+_SHAPELESS = (
+    "{}: its cell has no shape of what it turns, and nothing is said of its clearances: give the "
+    "table and what lies on it as [[obstacle]] with carried_by"
+)
+
 
 @dataclass(frozen=True, kw_only=True)
 class StationOptions(TaskOptions):
@@ -43,11 +48,13 @@ class StationOptions(TaskOptions):
     )
 
 
-def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
+def station_with(
+    source: str | Path | Sequence[str | Path], options: StationOptions
+) -> DrivenStation:
     """Run the programs of several robots on one clock, and prove that they keep clear.
 
     Args:
-        source: a station file, or a backup of several robots.
+        source: a station file, or backups: one of several robots, or several.
 
     Raises:
         InputError: a file cannot be read, or joins signals that are not there.
@@ -66,7 +73,7 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
         raise OptionError(
             f"{switched('interlocks')} rests on proofs, which {switched('no_proof')} leaves out"
         )
-    opened = open_station(Path(source), options.say)
+    opened = open_station(source, options.say)
     station, actions = opened.station, opened.actions
     options.say("running all programs on one clock")
     clock = StationClock(station, actions)
@@ -83,6 +90,7 @@ def station_with(source: str | Path, options: StationOptions) -> DrivenStation:
         options.say("sweeping motions")
         prover = StationProver(station, ordered)
         clearances = prover.all(run, options.jitter, orders, options.say)
+        notes += [Note(_SHAPELESS.format(name)) for name in prover.shapeless]
         quicker = passed_in_time(station, actions, options.jitter)
         if quicker is None:
             # Any of the paths may be driven then.

@@ -92,6 +92,11 @@ def bodies_of(cell: Cell, tool: Tool) -> Bodies:
         solids, odd = _obstacle_solids(obstacle.geometry)
         notes += odd
         found += _obstacle(cell.robot, obstacle, solids)
+    if not found:
+        raise InputError(
+            f"nothing of {cell.robot.name} and its cell has a shape: give the table and what lies "
+            "on it as [[obstacle]] with carried_by"
+        )
     return Bodies(tuple(found), tuple(notes))
 
 

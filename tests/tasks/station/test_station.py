@@ -610,3 +610,18 @@ def test_what_controllers_may_do_otherwise_is_noted(write: Write) -> None:
     notes = [str(note) for note in made.notes]
     assert any("two.mod:8" in note and "passes through the zone" in note for note in notes), notes
     assert any("one.mod:8" in note and "comes to this meeting" in note for note in notes), notes
+
+
+def test_several_backups_are_opened_at_once(tmp_path: Path) -> None:
+    """Two archives of one robot each: robots are called as their files, and where they stand has to
+    be said."""
+    axes = "A2 -90,A3 90,A4 0,A5 45,A6 0"
+    for k, name in enumerate(("left", "right")):
+        source = tmp_path / f"{name}.src"
+        source.write_text(f"DEF {name}( )\nPTP {{A1 0,{axes}}}\nPTP {{A1 40,{axes}}}\nEND\n")
+        cell = tmp_path / f"{name}.toml"
+        cell.write_text(f'robot = "kuka/kr30-3"\nbase = {{ xyz_mm = [{9000 * k}, 0, 0] }}\n')
+    with pytest.raises(InputError, match="of programs alone nobody says which robots"):
+        station([tmp_path / "left.src", tmp_path / "right.src"])
+    with pytest.raises(InputError, match="stands for itself"):
+        station([tmp_path / "left.toml", tmp_path / "right.src"])

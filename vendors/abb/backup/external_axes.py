@@ -9,11 +9,14 @@ Single and Single Type).
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ....core.cell.positioner import positioner
 from ....core.errors import InputError
 from ....core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from ....core.robot.model import Robot
+from ....core.robot.seven_axes.arm_angle import AXES
 from ....core.spatial.pose import IDENTITY, Pose, Vector3
 from ..values.records import EXTERNAL_AXES, unit_quaternion
 from .cfg import Parameters, Record
@@ -204,3 +207,56 @@ def _rest(others: list[float]) -> float:
     """u0 where it is left out: its default is 1, of a half turn it is 0."""
     length = math.sqrt(sum(part * part for part in others))
     return 1.0 if length < 1e-9 else math.sqrt(max(0.0, 1.0 - length * length))
+
+
+def units_named(units: Iterable[Unit], members: Iterable[str]) -> list[Unit]:
+    """Those of these names, or whose singles have them."""
+    names = {name.casefold() for name in members}
+    return [unit for unit in units if {unit.name.casefold(), unit.single.name.casefold()} & names]
+
+
+def with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
+    """The robot with its external axes in the order of robtargets."""
+    lacks = [lack for unit in units for lack in unit.lacks]
+    made = sorted((unit for unit in units if unit.axis is not None), key=lambda unit: unit.number)
+    axes: list[ExternalAxis] = []
+    behind = int(robot.arm_size == AXES)  # whose eax_a is the arm's own
+    for unit in made:
+        if unit.number < behind:
+            lacks.append(
+                f"unit {unit.name} is eax_{'abcdef'[unit.number]} of robtargets, and so is another "
+                "one: it is left out"
+            )
+            continue
+        assert unit.axis is not None
+        skips = unit.number > behind  # of places that are no axis of this robot
+        axes.append(replace(unit.axis, number=unit.number + 1) if skips else unit.axis)
+        behind = unit.number + 1
+    names = {axis.name for axis in axes}
+    for place, axis in enumerate(axes):
+        if axis.carried_by is not None and axis.carried_by not in names:
+            lacks.append(f"unit {axis.name} stands on {axis.carried_by}, which is taken to stand")
+            axes[place] = replace(axis, carried_by=None)
+    if not axes:
+        return robot, lacks
+    singles = [unit.single for unit in made if unit.name in names]
+    assumed = "; ".join(lack for unit in made for lack in unit.lacks)
+    origin = f"{origin_of(singles)}{assumed and f'; {assumed}'}"
+    origins = {**robot.origins, "external axes": origin}
+    try:
+        return replace(robot, external_axes=tuple(axes), origins=origins), lacks
+    except InputError as error:
+        return robot, [*lacks, f"external axes are left out: {error}"]
+
+
+def positioner_of(units: Sequence[Unit]) -> tuple[Robot, tuple[str, ...]]:
+    """Units that a task of their own turns, and what is not known of them."""
+    robot, lacks = with_units(positioner("abb", ()), units)
+    return robot, tuple(lacks)
+
+
+def origin_of(records: Sequence[Record]) -> str:
+    """What figures rest on that records of one section state."""
+    names = [record.name for record in records]
+    said = names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
+    return f"published: {records[0].section} {said} of the controller's own MOC.cfg"

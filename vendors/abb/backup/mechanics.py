@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -18,14 +19,23 @@ from ....core.backup.backup import BackupRobot
 from ....core.backup.contents import BackupNotes, listed
 from ....core.door import called
 from ....core.errors import InputError
-from ....core.robot.joint import CoupledRange, ExternalAxis, Joint
+from ....core.robot.joint import CoupledRange, Joint
 from ....core.robot.model import STANDARD_GRAVITY, Robot
 from ....core.robot.seven_axes.arm_angle import AXES
 from ....core.spatial.pose import IDENTITY, Pose
 from ....core.spatial.rotation import matrix_from_quaternion, matrix_from_rotation_vector
 from .arms import FindRobot, agreeing, find_arm
 from .cfg import Parameters, Record, folded
-from .external_axes import Unit, base_frame, conveyors, units_of
+from .external_axes import (
+    Unit,
+    base_frame,
+    conveyors,
+    origin_of,
+    positioner_of,
+    units_named,
+    units_of,
+    with_units,
+)
 from .planner import stated_speeds
 
 _SAME = 1e-3
@@ -36,6 +46,8 @@ _BETWEEN_ARMS = "the angle between upper arm and forearm"
 _TWO_ARMED = "14000"
 _SIDES = {"r": "right", "l": "left"}
 """By the ends of its arms' names."""
+_POSITIONER = "positioner"
+"""The type of units that a task of their own turns."""
 _LONGEST = 1e3
 """rad or m: a range beyond it is none."""
 
@@ -59,13 +71,15 @@ def mechanics_of(
     groups: Mapping[str, Sequence[str]],
     find_robot: FindRobot,
     notes: BackupNotes,
+    positioners: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> Mechanics:
-    """The arms.
+    """The arms, and positioners that tasks of their own turn.
 
     Args:
         moc: MOC.cfg, empty if there is none.
         products: arms among the controller's products.
         groups: in lower case, the names of the units that belong to each robot of a MultiMove.
+        positioners: names of the units of groups without an arm, by the group.
         find_robot: see `BackupOpener.open`.
         notes: where is said what the file should not hold.
     """
@@ -88,9 +102,15 @@ def mechanics_of(
     own = {f"{folded(arm.name)}{AXES}" for arm in arms}
     carrying = {(arm.text("base_frame_coordinated") or "").casefold() for arm in arms} - {""}
     units = [unit for unit in units_of(moc, carrying) if folded(unit.single.name) not in own]
-    owned = {arm.name: _own(arm, units, groups, len(arms) == 1) for arm in arms}
+    turned = {group: units_named(units, names) for group, names in positioners.items()}
+    alone = {unit.name for own in turned.values() for unit in own}
+    others = [unit for unit in units if unit.name not in alone]
+    owned = {arm.name: _own(arm, others, groups, len(arms) == 1) for arm in arms}
     robots = tuple(_robot(moc, arm, products, owned[arm.name], find_robot, notes) for arm in arms)
-    taken = {unit.name for own in owned.values() for unit in own}
+    robots += tuple(
+        BackupRobot(group, _POSITIONER, *positioner_of(own)) for group, own in turned.items() if own
+    )
+    taken = alone | {unit.name for own in owned.values() for unit in own}
     return Mechanics(robots, tuple(unit.name for unit in units if unit.name not in taken))
 
 
@@ -129,8 +149,7 @@ def _own(
     if single:
         return list(units)
     members = {*groups.get(arm.name.casefold(), ()), arm.text("base_frame_coordinated") or ""}
-    names = {name.casefold() for name in members}
-    return [unit for unit in units if {unit.name.casefold(), unit.single.name.casefold()} & names]
+    return units_named(units, members)
 
 
 def _robot(
@@ -151,7 +170,7 @@ def _robot(
     robot, lacks = found.robot, list(_assumed(found.robot))
     robot, said = _with_ranges(robot, moc, arm, notes)
     lacks += said
-    robot, said = _with_units(robot, units)
+    robot, said = with_units(robot, units)
     lacks += said
     robot = _placed(robot, arm, units, notes)
     lacks += _arm_loads(moc, arm)
@@ -196,7 +215,7 @@ def _with_ranges(
         joints.append(joint)
     if not records:
         return robot, ["MOC.cfg states no ranges of this arm: those of its type are taken"]
-    origins = {**robot.origins, "range": _origin(records)}
+    origins = {**robot.origins, "range": origin_of(records)}
     doubts = robot.doubts
     if unknown:
         said = "the range of a joint depends on its neighbour's (coupl_bound), which is not checked"
@@ -279,40 +298,6 @@ def _ranged(joint: Joint, record: Record, notes: BackupNotes) -> Joint:
 # base, gravity, external axes
 
 
-def _with_units(robot: Robot, units: Sequence[Unit]) -> tuple[Robot, list[str]]:
-    """The robot with its external axes in the order of robtargets."""
-    lacks = [lack for unit in units for lack in unit.lacks]
-    made = sorted((unit for unit in units if unit.axis is not None), key=lambda unit: unit.number)
-    axes: list[ExternalAxis] = []
-    behind = int(robot.arm_size == AXES)  # whose eax_a is the arm's own
-    for unit in made:
-        if unit.number < behind:
-            lacks.append(
-                f"unit {unit.name} is eax_{'abcdef'[unit.number]} of robtargets, and so is another "
-                "one: it is left out"
-            )
-            continue
-        assert unit.axis is not None
-        skips = unit.number > behind  # of places that are no axis of this robot
-        axes.append(replace(unit.axis, number=unit.number + 1) if skips else unit.axis)
-        behind = unit.number + 1
-    names = {axis.name for axis in axes}
-    for place, axis in enumerate(axes):
-        if axis.carried_by is not None and axis.carried_by not in names:
-            lacks.append(f"unit {axis.name} stands on {axis.carried_by}, which is taken to stand")
-            axes[place] = replace(axis, carried_by=None)
-    if not axes:
-        return robot, lacks
-    singles = [unit.single for unit in made if unit.name in names]
-    assumed = "; ".join(lack for unit in made for lack in unit.lacks)
-    origin = f"{_origin(singles)}{assumed and f'; {assumed}'}"
-    origins = {**robot.origins, "external axes": origin}
-    try:
-        return replace(robot, external_axes=tuple(axes), origins=origins), lacks
-    except InputError as error:
-        return robot, [*lacks, f"external axes are left out: {error}"]
-
-
 def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: BackupNotes) -> Robot:
     """The robot where it stands, and hanging as it does."""
     try:
@@ -339,7 +324,7 @@ def _placed(robot: Robot, arm: Record, units: Sequence[Unit], notes: BackupNotes
         message = f"{arm.name} stands on {on}, which is not known: it is taken to stand still"
         notes.add(message, arm.file, arm.line)
     gravity = _gravity(robot, arm, frame, notes)
-    origins = {**robot.origins, "base": _origin([arm])}
+    origins = {**robot.origins, "base": origin_of([arm])}
     return replace(robot, base=base, gravity=gravity, origins=origins)
 
 
@@ -432,10 +417,3 @@ def _calibrated(robot: Robot, arm: Record) -> Robot:
         return robot
     said = "calibrated (absolute accuracy): its joints are off the nominal ones by some hundredths"
     return replace(robot, doubts=(*robot.doubts, f"{said} to tenths of a degree"))
-
-
-def _origin(records: Sequence[Record]) -> str:
-    """What figures rest on that records of one section state."""
-    names = [record.name for record in records]
-    said = names[0] if len(names) == 1 else f"{names[0]} to {names[-1]}"
-    return f"published: {records[0].section} {said} of the controller's own MOC.cfg"

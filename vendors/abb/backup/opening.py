@@ -20,7 +20,7 @@ from .mechanics import mechanics_of
 from .modules import ModuleFiles
 from .planner import motion_figures
 from .signals import signals_of
-from .tasks import LoadedTask, arm_of, loaded_tasks, moves_an_arm, task_of, unit_groups
+from .tasks import LoadedTask, arm_of, loaded_tasks, moves_an_arm, named_group, task_of, unit_groups
 
 VENDOR = "abb"
 _CONTROLLERS = {"4": "S4C+", "5": "IRC5", "6": "IRC5", "7": "OmniCore"}
@@ -72,8 +72,12 @@ def _backup(
     sys, moc, eio = parameters
     groups = unit_groups(sys)
     members = {robot.casefold(): units for robot, units in groups.values() if robot}
+    driven = {named_group(task) for task in tasks if moves_an_arm(task, tasks)}
+    positioners = {
+        group: units for group, (robot, units) in groups.items() if not robot and group in driven
+    }
     products = info.arms or _products(contents)
-    mechanics = mechanics_of(moc, products, members, find_robot, notes)
+    mechanics = mechanics_of(moc, products, members, find_robot, notes, positioners)
     robots = mechanics.robots if moc or tasks else ()
     if mechanics.alone:
         notes.add(f"no arm moves the units {listed(mechanics.alone)}: they are taken to stand")

@@ -238,6 +238,12 @@ def _is_flagged(task: LoadedTask) -> bool:
     return task.record is not None and task.record.flag("motiontask")
 
 
+def named_group(task: LoadedTask) -> str | None:
+    """The group of units that a task moves, in lower case; None if it names none."""
+    group = None if task.record is None else task.record.text("usemechanicalunitgroup")
+    return None if group is None else group.casefold()
+
+
 def arm_of(
     task: LoadedTask, groups: Mapping[str, tuple[str, list[str]]], robots: Sequence[str]
 ) -> int | None:
@@ -248,10 +254,9 @@ def arm_of(
         groups: see `unit_groups`.
         robots: names of the arms.
     """
-    group = None if task.record is None else task.record.text("usemechanicalunitgroup")
-    if group is not None and group.casefold() in groups:
-        robot = groups[group.casefold()][0]
-        return _called(robot, robots) if robot else None
+    group = named_group(task)
+    if group is not None and group in groups:
+        return _called(groups[group][0] or group, robots)
     if len(robots) == 1:
         return 0
     for name in (group, task.name.partition("_")[2], task.name):

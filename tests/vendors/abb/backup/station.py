@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 RANGES = ((-180, 180), (-90, 150), (-180, 75), (-400, 400), (-125, 120), (-400, 400))
@@ -278,4 +278,30 @@ def multimove() -> Station:
             "SINGLE_TYPE": ['-name "ROT" -mechanics "FREE_ROT"'],
             "MECHANICAL_UNIT": ['-name "STN1" -use_single_0 "STN_1"'],
         },
+    )
+
+
+TABLE = """MODULE TableMain
+  PROC Main()
+    MoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[0,9E9,9E9,9E9,9E9,9E9]],v100,fine;
+    MoveExtJ [[9E9,9E9,9E9,9E9,9E9,9E9],[90,9E9,9E9,9E9,9E9,9E9]],v100,fine;
+  ENDPROC
+ENDMODULE
+"""
+
+
+def with_positioner(made: Station) -> Station:
+    """The same with a table that a task of its own turns."""
+    moc = {key: list(records) for key, records in (made.moc or one_robot()).items()}
+    moc["JOINT"].append('-name "stn_1" -logical_axis 7')
+    moc["ARM"].append('-name "stn_1" -lower_joint_bound -3 -upper_joint_bound 3')
+    moc["SINGLE"] = ['-name "STN_1" -use_single_type "ROT" -use_joint "stn_1"']
+    moc["SINGLE_TYPE"] = ['-name "ROT" -mechanics "FREE_ROT"']
+    moc["MECHANICAL_UNIT"] = ['-name "STN1" -use_single_0 "STN_1"']
+    return replace(
+        made,
+        tasks={**made.tasks, "TASK2": ("T_POS1", {"PROGMOD/TableMain.mod": TABLE})},
+        cab_tasks=(*made.cab_tasks, '-Name "T_POS1" -UseMechanicalUnitGroup "pos" -MotionTask'),
+        sys={"MECHANICAL_UNIT_GROUP": ('-Name "pos" -MechanicalUnit_1 "STN1"',)},
+        moc=moc,
     )

@@ -21,7 +21,7 @@ from flyby.vendors.abb.backup.cfg import parse_parameters
 from flyby.vendors.abb.backup.opener import OPENER
 from flyby.vendors.abb.backup.planner import stated_speeds
 
-from .station import MAIN, USER, Station, cfg, multimove, on_track, one_robot
+from .station import MAIN, USER, Station, cfg, multimove, on_track, one_robot, with_positioner
 
 ABB = find_vendor("abb")
 
@@ -196,6 +196,21 @@ def test_several_robots(tmp_path: Path) -> None:
     assert backup.tools["T_ROB2/tGripper"].tcp.position == (0.0, 0.0, 0.09)
     assert len(read(backup, 0).moves) == len(read(backup, 1).moves) == 3
     assert not texts(backup)
+
+
+def test_a_task_of_its_own_turns_a_positioner(tmp_path: Path) -> None:
+    """The arm has no such axis then, though it is the only arm."""
+    backup = opened(with_positioner(Station()), tmp_path)
+    arm, table = backup.robots
+    assert arm.robot is not None and table.robot is not None
+    assert not arm.robot.external_axes and not table.robot.has_arm
+    assert [axis.name for axis in table.robot.external_axes] == ["STN1"]
+    assert [task.robot for task in backup.tasks] == [0, 1]
+    turned = read(backup, 1).moves
+    assert [move.target.external for move in turned] == [(0.0,), (pytest.approx(math.pi / 2),)]
+    made = flyby.station(tmp_path)
+    assert set(made.run.schedules) == {"T_ROB1", "T_POS1"} and not made.clearances
+    assert any("T_POS1: its cell has no shape" in str(note) for note in made.notes)
 
 
 def test_event_routines_and_add_ins_are_said(tmp_path: Path) -> None:
