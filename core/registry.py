@@ -217,8 +217,8 @@ class Registry:
         )
         if not suffix:
             raise InputError(
-                f"{path}: the name has no suffix, which tells a program's language; known: "
-                f"{known or 'none'}"
+                f"{path}: the name has no suffix, which tells a program's language: copy it to a "
+                f"name with one; known: {known or 'none'}"
             )
         for vendor in self.vendors.values():
             if suffix in vendor.companions:

@@ -138,8 +138,13 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
     why = f"{said_to_fit(fit, places.count)}{assumed}"
     if not fit:
         fit, why = places.most_taken_by(vendor, arms)[:_TRIED], "none can take all its places"
+    elif not places.flanges:  # postures tell nothing of the size
+        mean = sorted(arm.reach or 0.0 for arm in fit)[len(fit) // 2]
+        fit.sort(key=lambda arm: abs((arm.reach or 0.0) - mean))
+        why = f"{why}, it with a middle reach of them"
     # Those go first that reach as well what hangs on unknown frames, as it is taken for.
-    reach = [] if assumed else TakenPlaces.of(program, assumed=True).taken_by(vendor, fit)
+    more = TakenPlaces.of(program, assumed=True)
+    reach = more.taken_by(vendor, fit) if more.flanges and not assumed else []
     if len(fit) == 1 or len(program.moves) > _LONGEST:
         return (*reach, *fit)[0], why
     count = max(2, min(_TRIED, _TRIED_MOVES // len(program.moves)))
@@ -198,7 +203,8 @@ def _first_that_drives(
 
 
 def _faults(source: str | Path, options: SourceOptions, most: int, placing: bool) -> int:
-    """How many moves an arm cannot drive; ``most`` of as many or more.
+    """How many moves an arm cannot drive of those of which anybody knows where they go; ``most`` of
+    as many or more.
 
     Args:
         placing: whether it is asked with the program's unknown frames put to where it can; with
@@ -216,7 +222,8 @@ def _faults(source: str | Path, options: SourceOptions, most: int, placing: bool
         if len(program.moves) > LONGEST or not assumed_places(program):
             return most
         program = placed(program, frames_that_fit(controller, program, start))
-    return count_faults(controller, program, start, most)
+    known = sum(bool(move.open) for move in program.moves)
+    return max(0, count_faults(controller, program, start, most + known) - known)
 
 
 def _mentioned(

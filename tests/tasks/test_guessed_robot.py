@@ -8,6 +8,7 @@ import pytest
 
 import flyby
 from flyby.core.errors import FlybyError, InputError
+from flyby.core.registry import all_listed, find_vendor
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
@@ -109,6 +110,14 @@ def test_an_arm_of_seven_axes_is_taken_where_targets_have_a_value_for_the_sevent
     moves.append("MoveL " + (target % 400).replace("-140", "-135") + ",v100,fine,tool0;")
     robot, said = taken(rapid(tmp_path, *moves))
     assert robot == "abb/irb14000-05-056-left" and "a seventh axis, which targets name" in said
+
+
+def test_postures_alone_are_driven_by_an_arm_of_middle_reach(tmp_path: Path) -> None:
+    move = "MoveAbsJ [[0,0,0,0,%d,0]," + UNUSED + "],v100,fine,tool0;"
+    robot, said = taken(rapid(tmp_path, move % 30, move % 60))
+    assert robot is not None and "can take the 2 places" in said
+    (reach,) = (arm.reach for arm in all_listed(find_vendor("abb")) if arm.name == robot)
+    assert reach is not None and 1.2 < reach < 3.0
 
 
 def test_who_names_a_robot_is_heard(tmp_path: Path) -> None:
