@@ -103,7 +103,15 @@ def _rows(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> 
         print_rich(f"and {len(rows) - _MOST} more {title}; --json lists all")
 
 
-_ROBOTS = ("unit", "type", "robot", "payload kg", "base x, y, z mm", "external axes")
+_ROBOTS = (
+    "unit",
+    "type",
+    "robot",
+    "payload kg",
+    "base x, y, z mm",
+    "quaternion w, x, y, z",
+    "external axes",
+)
 _TASKS = ("task", "moves", "files", "begins in", "with")
 _ENTRIES = ("task", "entry", "moves", "file", "")
 _TOOLS = ("tool", "x, y, z mm", "quaternion w, x, y, z", "mass kg", "")
@@ -113,10 +121,10 @@ _FRAMES = ("frame", "x, y, z mm", "quaternion w, x, y, z", "")
 def _robot_cells(known: BackupRobot) -> tuple[str, ...]:
     robot = known.robot
     if robot is None:
-        return (known.unit, known.written, "not known", "", "", "")
+        return (known.unit, known.written, "not known", "", "", "", "")
     payload = "" if robot.payload is None else f"{robot.payload:g}"
     axes = ", ".join(f"{axis.name} ({axis.role.value})" for axis in robot.external_axes)
-    return (known.unit, known.written, robot.name, payload, _place(robot.base), axes)
+    return (known.unit, known.written, robot.name, payload, *_pose(robot.base), axes)
 
 
 def _task_cells(backup: Backup, task: Task) -> tuple[str, ...]:

@@ -226,7 +226,9 @@ def patch_with(what: Program | Solution, options: PatchOptions) -> tuple[Path, .
         before, after, files = what.original, what.program, _proven_texts(what, options)
     if options.in_place:
         refuse_not_executed(not_executed_notes(before, after, setup.vendor))
-    return tuple(places.write(files, before)) if files or options.out is not None else ()
+    if not files and options.out is None:
+        return ()
+    return tuple(places.write(files, replace(before, setup=setup)))  # that knows the backup
 
 
 patch = by_keywords(patch_with, PatchOptions)

@@ -7,7 +7,7 @@ import os
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from ...core.errors import InputError
@@ -44,7 +44,7 @@ def copy_of(backup: Backup, changed: Mapping[Path, bytes], out: Path) -> BackupC
 
     Returns:
         All files of what the user named as the backup, README and pictures included; of an archive
-        one file; of a single file that one and what has changed around it.
+        one file; of a single file that one, what it is read with and what has changed around it.
 
     Raises:
         InputError: a folder cannot become an archive, the copy would lie in the backup itself, or
@@ -61,7 +61,7 @@ def copy_of(backup: Backup, changed: Mapping[Path, bytes], out: Path) -> BackupC
     top = backup.unpacked or source
     if not top.is_dir():
         files = {out / path.relative_to(backup.root): data for path, data in changed.items()}
-        return BackupCopy(files, tuple(files))
+        return BackupCopy({**_beside(backup, out), **files}, tuple(files))
     _check_apart(top, out)
     known = {Path(os.path.abspath(path)): data for path, data in changed.items()}
     made: dict[Path, bytes] = {}
@@ -72,6 +72,17 @@ def copy_of(backup: Backup, changed: Mapping[Path, bytes], out: Path) -> BackupC
         made[place] = read_bytes(path, _LARGEST) if data is None else data
         others += [] if data is None else [place]
     return BackupCopy(made, tuple(others))
+
+
+def _beside(backup: Backup, out: Path) -> dict[Path, bytes]:
+    """The files that a single one is read with; those from above its folder beside it."""
+    places = {}
+    for name in (file for task in backup.tasks for file in task.files):
+        path = backup.root / name
+        place = PurePosixPath(name)
+        if path.is_file():
+            places[out / (place.name if ".." in place.parts else place)] = path
+    return {place: read_bytes(path, _LARGEST) for place, path in places.items()}
 
 
 def _files_below(top: Path) -> Iterator[Path]:

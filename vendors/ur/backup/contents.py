@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
+from ....core.backup.contents import listed
 from ....core.errors import FlybyError, InputError, Note
 from ....core.files.reading import read_bytes
 from ....core.source.text.files import LARGEST_FILE, decode
@@ -82,9 +83,31 @@ def read_contents(root: Path, names: Sequence[str]) -> Contents:
         if _suffix(name) == INSTALLATION:
             _guarded(contents, name, _add_installation)
     trees = [name for name in names if _suffix(name) in (PROGRAM, POLYSCOPE_X)]
-    for name in trees or [name for name in names if _suffix(name) == SCRIPT]:
+    scripts = [name for name in names if _suffix(name) == SCRIPT]
+    for name in trees or scripts:
         _guarded(contents, name, _add_program)
+    if trees:
+        _note_left_out(contents, trees, scripts)
     return contents
+
+
+def _note_left_out(contents: Contents, trees: Sequence[str], scripts: Sequence[str]) -> None:
+    """Scripts that PolyScope has saved of no tree, and that no tree runs."""
+    saved = {PurePosixPath(name).stem.casefold() for name in trees}
+    own = [name for name in scripts if PurePosixPath(name).stem.casefold() not in saved]
+    if not own:
+        return
+    run = " ".join(
+        str(text).casefold()
+        for one in contents.programs
+        if one.tree is not None
+        for node in one.tree.root.iter("Script")
+        for text in (*node.itertext(), *(v for part in node.iter() for v in part.attrib.values()))
+    )
+    left = [name for name in own if PurePosixPath(name).name.casefold() not in run]
+    if left:
+        told = f"{listed(left)}: left out, as no program is called so or runs it: name it by itself"
+        contents.notes.append(Note(told))
 
 
 def marked_below(root: Path) -> list[str]:
@@ -120,6 +143,12 @@ def _guarded(contents: Contents, name: str, add: Callable[[Contents, str], None]
         add(contents, name)
     except FlybyError as error:
         told = str(error).replace(f"{contents.root}{os.sep}", "")
+        script = PurePosixPath(name).with_suffix(SCRIPT)
+        if _suffix(name) == PROGRAM and (contents.root / script).is_file():
+            told = f"{told}: {script.name} beside it is read in its place"
+            contents.notes.append(Note(told))
+            _guarded(contents, script.as_posix(), add)
+            return
         contents.notes.append(Note(f"{PASSED_OVER}{told}"))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -110,6 +111,27 @@ def test_one_file_is_opened_alone_with_its_installation(build: Build, tmp_path: 
     assert len(flyby.read(tmp_path, entry="pick & place 2").moves) == 2
     with pytest.raises(OptionError, match=r"none of .* has a routine Gone 1\. Choose with entry"):
         flyby.read(tmp_path, entry="Gone 1")
+
+
+@pytest.mark.parametrize("place", ["default.installation", "../cell.installation"])
+def test_the_copy_of_one_file_has_what_it_is_read_with(
+    build: Build, tmp_path: Path, place: str
+) -> None:
+    folder = tmp_path / "programs"
+    beside = build.packed(folder / place, build.installation())
+    named = place.removesuffix(".installation")
+    build.packed(folder / "job.urp", build.program(move(build), installation=named))
+    build.packed(folder / "other.urp", build.program(move(build)))
+    program = flyby.read(folder / "job.urp")
+    slower = [replace(one, speed=replace(one.speed, joint=0.5)) for one in program.moves]
+    (made,) = flyby.patch(program.with_moves(tuple(slower)), out=tmp_path / "copy")
+    assert made == tmp_path / "copy/job.urp"
+    names = sorted(one.name for one in (tmp_path / "copy").iterdir())
+    assert names == sorted([Path(place).name, "job.urp"])
+    assert (tmp_path / "copy" / Path(place).name).read_bytes() == beside.read_bytes()
+    again = flyby.read(tmp_path / "copy" / "job.urp")
+    assert again.moves[0].tool.tcp == program.moves[0].tool.tcp
+    assert again.moves[0].speed.joint == 0.5
 
 
 def test_an_archive_is_the_folder_in_it(build: Build, tmp_path: Path) -> None:
@@ -236,6 +258,32 @@ def test_the_mounting_turns_the_base(build: Build, tmp_path: Path) -> None:
     assert robot is not None
     up = robot.base.matrix()[:3, :3].T @ (0.0, 0.0, 1.0)
     np.testing.assert_allclose(up, (0.0, 1.0, 0.0), atol=1e-12)
+
+
+def test_scripts_beside_trees_are_not_left_out_silently(build: Build, tmp_path: Path) -> None:
+    runs = (
+        '<Script type="File"><cachedContents/><file resolves-to="file">grip.script</file></Script>'
+    )
+    build.packed(tmp_path / "job.urp", build.program(move(build) + runs))
+    for name in ("job", "grip", "main"):
+        (tmp_path / f"{name}.script").write_text(f"def {name}():\n  movej({list(A)})\nend\n")
+    backup = opened(tmp_path)
+    assert [task.name for task in backup.tasks] == ["job"]
+    (note,) = [str(note) for note in backup.notes if "left out" in str(note)]
+    assert note.startswith("main.script: left out, as no program is called so")
+
+
+def test_the_script_beside_stands_in_for_a_tree_that_cannot_be_read(
+    build: Build, tmp_path: Path
+) -> None:
+    build.packed(tmp_path / "good.urp", build.program(move(build)))
+    (tmp_path / "job.urp").write_bytes(bytes(range(64)) * 4)
+    (tmp_path / "job.script").write_text(f"def job():\n  movej({list(A)})\nend\n")
+    backup = opened(tmp_path)
+    assert [task.main for task in backup.tasks] == ["good.urp", "job.script"]
+    assert any("job.script beside it is read in its place" in str(note) for note in backup.notes)
+    assert len(flyby.read(tmp_path, entry="job").moves) == 1
+    assert [task.name for task in opened(tmp_path / "job.urp").tasks] == ["job"]
 
 
 def test_damaged_files_are_passed_over(build: Build, tmp_path: Path) -> None:
