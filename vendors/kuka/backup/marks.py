@@ -38,11 +38,23 @@ class Layout:
         robot: the folder R1, or what stands for it; ``""`` for the root itself.
         controller: the folder STEU; None if there is none.
         copies: other folders R1, which are left out.
+        loose: programs and data lists beside R1 that are taken as parts of it: there is the
+            ``$config.dat`` that R1 lacks.
     """
 
     robot: str
     controller: str | None
     copies: tuple[str, ...] = ()
+    loose: tuple[str, ...] = ()
+
+    def inside(self, name: str) -> str | None:
+        """A file's place in R1; None if it is no part of it."""
+        if name in self.loose:
+            above = _above(self.robot)
+            return name[len(above) + 1 if above else 0 :]
+        if not _inside(name, self.robot):
+            return None
+        return name[len(self.robot) + 1 if self.robot else 0 :]
 
 
 def root_in(names: Sequence[str]) -> str | None:
@@ -73,7 +85,26 @@ def layout_of(names: Sequence[str]) -> Layout:
     robot = robots[0] if robots else _lone(names)
     copies = [one for one in robots[1:] if not _inside(one, robot)]
     beside = [one for one in steu if _above(one) == _above(robot)]
-    return Layout(robot, next(iter((*beside, *steu)), None), tuple(copies))
+    loose = _loose(names, robot, (*robots, *steu)) if robots else ()
+    return Layout(robot, next(iter((*beside, *steu)), None), tuple(copies), loose)
+
+
+def _loose(names: Sequence[str], robot: str, folders: Sequence[str]) -> tuple[str, ...]:
+    """What stands beside R1 as if in it, where the ``$config.dat`` does that R1 has not."""
+    above = _above(robot)
+    known = [name for name in names if _last(name) == CONFIG]
+    if any(_inside(name, robot) for name in known):
+        return ()
+    places = [f"{above}/{room}".strip("/") for room in ("", "system")]
+    if not any(_above(name).casefold() in map(str.casefold, places) for name in known):
+        return ()
+    return tuple(
+        name
+        for name in names
+        if name.casefold().endswith(_SOURCES)
+        and _inside(name, above)
+        and not any(_inside(name, folder) for folder in folders)
+    )
 
 
 def of_vkrc(names: Sequence[str], layout: Layout) -> bool:

@@ -41,6 +41,10 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
         )
     if layout.copies:
         notes.add(f"{listed(layout.copies)} left out: {layout.robot or 'R1'} is read")
+    if layout.loose:
+        notes.add(
+            f"read as parts of {layout.robot}, beside which they stand: {listed(layout.loose)}"
+        )
     lists = lists_of(contents)
     identity = identity_of(contents, lists.machine)
     files = source_files(contents)

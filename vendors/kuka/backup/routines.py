@@ -55,6 +55,7 @@ def routines_in(source: SourceFile) -> tuple[Routine, ...]:
     stem = stem_of(source.name)
     heads = list(_DEF.finditer(text))
     ends = [*(head.start() for head in heads[1:]), len(text)]
+    renamed = not any(head["name"].lower() == stem for head in heads)  # the file, by somebody
     found = []
     for head, end in zip(heads, ends, strict=False):
         body = text[head.end() : end]
@@ -65,7 +66,9 @@ def routines_in(source: SourceFile) -> tuple[Routine, ...]:
                 name=name,
                 file=source.name,
                 parameters=tuple(filter(None, (one.strip() for one in takes))),
-                shared=bool(head["shared"]) or name.lower() == stem,
+                shared=bool(head["shared"])
+                or name.lower() == stem
+                or (renamed and head is heads[0] and not head["gives"]),
                 gives=head["gives"] is not None,
                 moves=len(_MOVE.findall(body)),
                 calls=tuple(dict.fromkeys(one.lower() for one in _CALLED.findall(body))),

@@ -182,11 +182,16 @@ def _submit(name: str, source: SourceFile, sources: Mapping[str, SourceFile]) ->
 
 def _is_source(name: str, layout: Layout) -> bool:
     """Whether a file is one of the programs."""
-    head = f"{layout.robot}/" if layout.robot else ""
-    if _suffix(name) not in (PROGRAM, SUBMIT, DATA) or not name.startswith(head):
+    inside = layout.inside(name)
+    if _suffix(name) not in (PROGRAM, SUBMIT, DATA) or inside is None:
         return False
-    folders = [part.casefold() for part in name[len(head) :].split("/")[:-1]]
-    outside = not layout.robot and folders[:1] in (["c"], ["d"], ["steu"], ["krc"])
+    folders = [part.casefold() for part in inside.split("/")[:-1]]
+    outside = (not layout.robot or name in layout.loose) and folders[:1] in (
+        ["c"],
+        ["d"],
+        ["steu"],
+        ["krc"],
+    )
     machine = name.casefold().rpartition("/")[2] in ("$machine.dat", "$robcor.dat", "$custom.dat")
     return not outside and not machine and not _NO_PROGRAMS & set(folders)
 
@@ -200,7 +205,7 @@ def _rank(name: str, layout: Layout) -> tuple[bool, int, int, str]:
 
 def _room(name: str, layout: Layout) -> str:
     """The folder of R1 that a file is in, lower case; empty for R1 itself."""
-    inside = name[len(layout.robot) + 1 if layout.robot else 0 :]
+    inside = layout.inside(name) or ""
     return inside.partition("/")[0].casefold() if "/" in inside else ""
 
 

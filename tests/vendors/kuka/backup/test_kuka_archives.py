@@ -382,43 +382,6 @@ def test_where_its_parts_are() -> None:
     assert layout.copies == ("b/R1",)
 
 
-@pytest.mark.parametrize(
-    ("names", "folder"),
-    [
-        (["README.md", "a.src", "$config.dat", "plc/x.st"], ""),
-        (["cell/Line/a.src", "cell/$CONFIG.DAT", "old/b.src"], "cell"),
-        (["x/$config.dat", "y/Line/a.src", "y/b.SRC", "y/b.dat"], "y"),
-        (["a.src"], ""),
-        (["$config.dat", "sps.sub"], None),
-        (["PROGMOD/Main.mod"], None),
-    ],
-)
-def test_where_programs_alone_begin(names: list[str], folder: str | None) -> None:
-    assert OPENER.root_in(names) is None
-    assert OPENER.programs_in(names) == folder
-
-
-def test_programs_beside_the_controllers_list(tmp_path) -> None:
-    """Somebody's repository: the list that says tools and the robot, and programs in folders."""
-    files = {name.partition("R1/")[2]: text for name, text in programs().items()}
-    del files["System/sps.sub"]
-    folder = written(tmp_path, {**files, "$config.dat": CONFIG, "README.md": "Palletiser\n"})
-    backup = flyby.open_backup(folder)
-    whole = opened(tmp_path / "whole", archive())
-    assert backup.root == folder
-    assert (backup.tools, backup.frames, backup.homes) == (whole.tools, whole.frames, whole.homes)
-    assert [one.name for one in backup.tasks[0].entries] == [
-        one.name for one in whole.tasks[0].entries
-    ]
-    known = backup.robots[0]
-    assert known.robot is not None and known.robot.name == "kuka/kr16-2"
-    assert "no $machine.dat can be read" in known.lacks[0]
-    alone = {name: text for name, text in files.items() if "lib" in name or name == "Program/x.dat"}
-    bare = flyby.open_backup(written(tmp_path / "alone", alone))
-    assert bare.tasks[0].name == "R1" and bare.robots[0].robot is None
-    assert "tools, bases and homes are not known" in said(bare)
-
-
 def test_what_is_none(tmp_path) -> None:
     (tmp_path / "a.sub").write_text("DEF a()\nEND\n")
     with pytest.raises(InputError, match="no archive of a KUKA controller"):
