@@ -92,7 +92,8 @@ class PluginFault(SourceError):
             last = last.tb_next
         code = None if last is None else last.tb_frame.f_code
         at = "" if code is None or last is None else f", {code.co_filename}:{last.tb_lineno}"
-        return cls(f"{what} fails: {type(error).__name__}: {error}{at}", span)
+        hint = "; what a text does wrong is an InputError" if isinstance(error, ValueError) else ""
+        return cls(f"{what} fails: {type(error).__name__}: {error}{at}{hint}", span)
 
 
 class EntryError(SourceError):

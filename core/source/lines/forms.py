@@ -83,7 +83,7 @@ class FormGrammar(Grammar):
         """See `Grammar`.
 
         Raises:
-            InputError, ValueError: it says nothing that there is.
+            InputError: it says nothing that there is.
         """
         if line.end - line.start > self.longest:
             raise InputError(f"a line has {self.longest} characters at most")
@@ -101,7 +101,7 @@ class FormGrammar(Grammar):
     def _said(self, name: str, form: Form, line: Line, found: Found) -> Said:
         try:
             return form(self, line, found)
-        except (FlybyError, ValueError):
+        except FlybyError:
             raise
         except Exception as error:
             groups = ", ".join(found.re.groupindex) or "none"

@@ -435,7 +435,7 @@ class _Interpreter:
             raise SourceError("a number is larger than controllers hold", statement.span)
         try:
             move = statement.build(numbers[0], numbers[1], numbers[2], numbers[3], self)
-        except (InputError, ValueError) as error:
+        except InputError as error:
             raise SourceError(str(error), statement.span) from None
         except FlybyError:
             raise

@@ -51,6 +51,12 @@ def _folded(given: Any) -> Any:
     return frozenset(map(_folded, given)) if isinstance(given, set | frozenset) else given
 
 
+def _is_held(key: Any, held: Any) -> bool:
+    """Whether a row of `Initial` is one."""
+    named = isinstance(key, tuple) and len(key) == 2 and isinstance(key[0], str)
+    return named and isinstance(held, int | float | Numbers)
+
+
 class Grammar:
     """What a language takes a line for. Upper and lower case of its words are the same.
 
@@ -77,6 +83,13 @@ class Grammar:
         for name, given in list(vars(cls).items()):
             if name in _WORDS:
                 setattr(cls, name, _folded(given))
+        wrong = [key for key, held in cls.initial.items() if not _is_held(key, held)]
+        if wrong:
+            raise InputError(
+                f"{cls.__qualname__}.initial: {wrong[0]!r} is no word and number that hold one: "
+                f'write {{("{wrong[0] if isinstance(wrong[0], str) else "R"}", None): 100.0}} of a '
+                'register that there is once, {("R", 1): 0.0} of one with a number'
+            )
 
     def holds(self, word: str) -> bool:
         """Whether data of a word are what the program has set them to."""
@@ -91,7 +104,8 @@ class Grammar:
         """What a line says; None for nothing, a comment.
 
         Raises:
-            InputError, ValueError: it says nothing that there is; the line is named by the caller.
+            InputError: it says nothing that there is; the line is named by the caller. All else
+                is the grammar's own fault (`PluginFault`).
         """
         raise NotImplementedError
 
@@ -246,7 +260,7 @@ def _statements(
     for line in lines(source):
         try:
             said = several(grammar.statement(line))
-        except (InputError, ValueError) as error:
+        except InputError as error:
             text = " ".join(source.text[line.start : line.end].split())
             raise SourceError(f"{text!r} is no {name} statement: {error}", line.span) from None
         except FlybyError:
@@ -265,7 +279,7 @@ def mostly_said(
     try:
         for line in islice(lines(SourceText(unbroken(text), "")), _ENOUGH):
             every += 1
-            with suppress(FlybyError, ValueError):
+            with suppress(FlybyError):
                 said = several(grammar.statement(line))
                 known += not any(isinstance(one, Kept) for one in said)
     except FlybyError:  # the text is none of its files

@@ -83,9 +83,10 @@ class Signals:
         quiet = self.quiet(text).strip()
         line = Line(SourceText(quiet, ""), 0, len(quiet))
         try:
-            (said,) = several(self.grammar().statement(line)) if len(quiet) <= _ENOUGH else ()
-        except (InputError, ValueError):
+            told = several(self.grammar().statement(line)) if len(quiet) <= _ENOUGH else ()
+        except InputError:
             return None
+        said = told[0] if len(told) == 1 else None
         if isinstance(said, Kept):
             return said.signal
         if isinstance(said, Pause) and said.condition is not None:

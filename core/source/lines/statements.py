@@ -132,7 +132,7 @@ class Drive:
 
     Args:
         build: the move from the numbers of its target, speed, zone and auxiliary point, and from
-            what else is so; of what it raises (`InputError`, `ValueError`) the line is named.
+            what else is so; of what it refuses (`InputError`) the line is named.
         via: the auxiliary point of an arc.
     """
 

@@ -31,6 +31,7 @@ class Grammar(MotionGrammar):
         "missing": r"A\s+(?P<kind>\w+)",
         "unknown.word": r"B (?P<word>\w+)",
         "motion": r"C",
+        "pair": r"D (?P<pair>.*)",
     }
 
     def missing(self, line: Line, found: Found) -> Said:
@@ -39,6 +40,10 @@ class Grammar(MotionGrammar):
 
     def unknown(self, line: Line, found: Found) -> Said:
         return {"ON": None}[found["word"]]
+
+    def pair(self, line: Line, found: Found) -> Said:
+        _, _ = found["pair"].split(",")
+        return None
 
     def motion(self, line: Line, found: Found) -> Said:
         def build(target: Any, *_: Any) -> Move:
@@ -69,13 +74,17 @@ class Language(LineLanguage):
             r"IndexError: no such group, .*test_faults_of_forms\.py:\d+$",
         ),
         ("B OFF", r"^a\.odd:1:1: 'B OFF': the form 'unknown\.word' .*: KeyError: 'OFF'"),
+        (
+            "D 1,2,3",
+            r"'pair' .*: ValueError: too many values .*; what a text does wrong is an InputError$",
+        ),
         ("C", r"^a\.odd:1:1: 'C': Grammar\.motion\.build fails: IndexError: tuple index"),
     ],
 )
 def test_a_form_that_fails_is_named_with_its_line(text: str, said: str) -> None:
     with pytest.raises(PluginFault, match=said) as found:
         Language().read(text, "a.odd", ReadOptions())
-    assert isinstance(found.value.__cause__, IndexError | KeyError)
+    assert isinstance(found.value.__cause__, IndexError | KeyError | ValueError)
 
 
 def test_a_writer_that_fails_is_named() -> None:
@@ -99,3 +108,13 @@ def test_a_table_that_is_wrong_is_named(forms: dict[str, str], said: str) -> Non
     wrong = type("Wrong", (FormGrammar,), {"forms": forms})
     with pytest.raises(InputError, match=said):
         wrong()
+
+
+@pytest.mark.parametrize(
+    "initial",
+    [{"SPDRATE": {None: 100.0}}, {"SPDRATE": 100.0}, {("SPDRATE", None): {1: 100.0}}],
+)
+def test_what_registers_hold_at_first_has_one_form(initial: Any) -> None:
+    said = r"Wrong\.initial: .*SPDRATE.* write \{\(\".*\", None\): 100\.0\}"
+    with pytest.raises(InputError, match=said):
+        type("Wrong", (FormGrammar,), {"initial": initial})
