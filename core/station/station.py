@@ -14,6 +14,7 @@ from ..motion.emulator.run import Run
 from ..program.program import Program
 from ..program.tool import Load
 from ..program.world_zone import WorldZone
+from ..spatial.pose import IDENTITY, Pose
 from .actions import Action
 from .carried import CarriedMoves
 from .gates import Gate
@@ -55,6 +56,7 @@ class StationRobot:
             there are none.
         handling: of the parts of its cell; None for a cell without.
         carried: what other robots turn under its program.
+        world: where what its controller calls the world is in the station's.
     """
 
     name: str
@@ -67,6 +69,7 @@ class StationRobot:
     passing: Passing | None = None
     handling: Handling | None = None
     carried: tuple[CarriedMoves, ...] = ()
+    world: Pose = IDENTITY
 
     def carrying(self, program: Program) -> Program:
         """A program of the same moves with the parts that the robot carries along them."""

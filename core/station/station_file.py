@@ -13,6 +13,8 @@ from pathlib import Path
 from ..errors import InputError
 from ..files.tables import LENGTH, TomlTable
 from ..program.world_zone import WorldZone
+from ..robot.pose_table import pose_at
+from ..spatial.pose import IDENTITY, Pose
 from .gates import Gate, GateKind, Input
 from .plc import PLC
 from .station import HandOver, Wire, signal_key
@@ -32,6 +34,7 @@ class MemberFile:
         program: file, folder or backup.
         entry, task, answers, start, configuration: as options of commands have them.
         begins: s after the station's start.
+        world: where what its controller calls the world is in the station's.
     """
 
     name: str
@@ -43,6 +46,7 @@ class MemberFile:
     start: str | None
     configuration: str | None
     begins: float
+    world: Pose = IDENTITY
 
 
 @dataclass(frozen=True)
@@ -139,6 +143,7 @@ def _member(name: str, table: TomlTable) -> MemberFile:
         table.text("start") if table.has("start") else None,
         table.choice("configuration", _CONFIGURATIONS) if table.has("configuration") else None,
         table.quantity("begins", _DELAY, 0.0),
+        pose_at(table, "world"),
     )
     if made.begins < 0:
         raise table.error("begins", "must be zero or more")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError, InputError, Note
+from ...core.spatial.pose import IDENTITY, Pose
 from ..read import SourceOptions, read_with
 from ..results.cell_course import CellCourse
 from ..setup import Setup, setup_of_program, start_of
@@ -90,6 +91,8 @@ def read_member(stated: MemberFile, file: StationFile) -> ReadMember:
         )
         program: Program = read_with(stated.program, source)
         setup = setup_of_program(program)
+        if stated.world != IDENTITY:
+            program, setup = _moved(program, setup, stated.world)
         words = None if setup.vendor.speaks is None else setup.vendor.speaks.signals
         passed = waits_behind_zones(program, words)
         program = stopping(program, words)
@@ -97,6 +100,16 @@ def read_member(stated: MemberFile, file: StationFile) -> ReadMember:
     except FlybyError as error:
         raise InputError(f"{file.file}: robot.{stated.name}: {error}") from error
     return ReadMember(stated, program, setup, words, passed, meetings)
+
+
+def _moved(program: Program, setup: Setup, world: Pose) -> tuple[Program, Setup]:
+    """A program with its robot and cell where its controller's world is in the station's."""
+    from ...core.cell.placing import moved_cell, moved_program, moved_robot
+
+    robot = moved_robot(setup.robot, world)
+    cell = None if setup.cell is None else moved_cell(setup.cell, robot, world)
+    setup = replace(setup, robot=robot, cell=cell)
+    return replace(moved_program(program, world), setup=setup), setup
 
 
 def drive_members(
@@ -226,5 +239,6 @@ def _driven(member: ReadMember) -> Driven:
         member.stated.begins,
         handling=course.handling,
         carried=member.carried,
+        world=member.stated.world,
     )
     return made, [replace(note, message=f"{name}: {note.message}") for note in course.notes]

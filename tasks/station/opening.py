@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...core.door import called
 from ...core.errors import InputError, MotionError, Note
+from ...core.spatial.pose import IDENTITY
 from ..setup import start_of
 from .members import ReadMember, drive_members, read_member
 from .names import check_names
@@ -193,6 +193,9 @@ def _with_own_zones(
     if words is None or words.zones is None or not isinstance(reading, Reading):
         return file, []
     found, notes = words.zones(_loaded(reading, member.program), member.cell.robot)
+    if found and member.world != IDENTITY:
+        why = "its world zones are in its controller's world: give them in the station file"
+        return file, [Note(f"{member.name}: {zone.signal}: {why}") for zone in found]
     stated = {name.casefold() for name in _zoned(file, member.name)}
     own = [
         replace(zone, robot=member.name) for zone in found if zone.signal.casefold() not in stated
@@ -345,6 +348,6 @@ def _check_starts(file: StationFile, members: dict[str, StationRobot]) -> None:
                 raise InputError(
                     f"{file.file}: {one} and {other} stand at one place: their cells put both "
                     f"bases at {1e3 * places[one].round(4)} mm in the world; say in each cell "
-                    "where its robot stands (base); of backups, write a station file that names a "
-                    f"cell for each, as {called('import')} writes it"
+                    "where its robot stands (base), or in the station file where its controller's "
+                    "world is (world = { xyz_mm = [3000, 0, 0] })"
                 )

@@ -22,6 +22,7 @@ from ....core.errors import InputError, MotionError
 from ....core.handling.handling import handling_of
 from ....core.motion.emulator.controller import Controller
 from ....core.motion.emulator.run import Run
+from ....core.spatial.pose import IDENTITY
 from ....core.station.actions import Action, actions_of
 from ....core.station.awaited import bearing
 from ....core.station.clearances import StationProver
@@ -117,6 +118,11 @@ class StationFeasibility:
                 "robots', or on what these turn, are not improved yet"
             )
         for name, member in station.members.items():
+            if member.world != IDENTITY:
+                raise InputError(
+                    f"{name}: programs of a robot with a world of its own in the station file are "
+                    "not improved yet: say in its cell where it stands (base), or improve it there"
+                )
             if member.passing is not None:
                 move = member.program.moves[member.passing.moves[0]]
                 raise InputError(

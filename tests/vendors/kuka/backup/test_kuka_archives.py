@@ -411,3 +411,35 @@ def test_programs_that_are_called_so_are_read(tmp_path) -> None:
     """KRL of iiQKA.OS2 is KRL."""
     (tmp_path / "iiqka_demo.src").write_text("DEF iiqka_demo()\nPTP {A1 10}\nEND\n")
     assert len(flyby.read(tmp_path / "iiqka_demo.src", robot="kuka/kr16-2").moves) == 1
+
+
+def test_two_archives_are_a_station(tmp_path: Path) -> None:
+    """Called as their files; where the world of each controller is the station file says, and each
+    drives there as it did at home."""
+    folders = [written(tmp_path / name, archive()) for name in ("left", "right")]
+    with pytest.raises(InputError, match=r"left and right stand at one place.*world = "):
+        flyby.station(folders)
+    text = "clearance_mm = 5\n"
+    for k, folder in enumerate(folders):
+        world = f"world = {{ xyz_mm = [{5000 * k}, 300, 0], abc_deg = [{150 * k}, 0, 0] }}"
+        text += f'[robot.{folder.name}]\nprogram = "{folder.name}"\n{world}\n'
+    file = tmp_path / "station.toml"
+    file.write_text(text)
+    made = flyby.station(file)
+    (pair,) = made.clearances
+    assert made.clear and pair.any_time.proven
+    left, right = (member.run.trajectory for member in made.station.members.values())
+    assert np.allclose(left.q, right.q, atol=1e-9)
+    turned = math.radians(150.0)
+    x, y, z = (left.position - np.array([0.0, 0.3, 0.0])).T
+    there = np.stack(
+        [
+            5.0 + math.cos(turned) * x - math.sin(turned) * y,
+            0.3 + math.sin(turned) * x + math.cos(turned) * y,
+            z,
+        ],
+        -1,
+    )
+    assert np.allclose(right.position, there, atol=1e-9)
+    with pytest.raises(InputError, match="world of its own"):
+        flyby.station_zones(file)
