@@ -25,26 +25,11 @@ from ..robot.joint import ExternalAxis, ExternalRole, Joint
 from ..robot.model import Robot
 from ..spatial.pose import IDENTITY
 from .actions import MeetingPoint
+from .station import CarriedMoves
 from .synchronised import Together
 
 _SAME = 1e-9
 """rad or m within which a table stands where it stood."""
-
-
-@dataclass(frozen=True)
-class CarriedMoves:
-    """What another robot turns under a program, and the moves on which it turns.
-
-    Args:
-        carrier: the robot that turns it.
-        axes: names of the carrier's axes, and of the robot's own that stand for them.
-        blocks: moves in a row, by index, and those of the carrier that are made together with them;
-            none where it stands while the robot works on it.
-    """
-
-    carrier: str
-    axes: Mapping[str, str]
-    blocks: tuple[Mapping[int, int], ...]
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,7 @@ from ..collision.scene.scene import CollisionScene
 from ..errors import InputError
 from ..handling.handling import Handling
 from ..program.tool import Tool
-from .carried import CarriedMoves
-from .station import StationRobot
+from .station import CarriedMoves, StationRobot
 
 _FAR = 1.0
 """m up to which distances are measured."""

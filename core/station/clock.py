@@ -12,9 +12,8 @@ from ..arrays import FloatArray
 from ..errors import InputError, Note
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal, levels
 from .actions import Action
-from .pace import ClockPace
 from .plc import Plc
-from .station import RobotStation, levels_at_start, signal_key
+from .station import ClockPace, RobotStation, levels_at_start, signal_key
 
 _SWINGS = 10_000
 """Changes of signals, at one instant or while all robots wait, after which these swing for ever."""

@@ -6,6 +6,9 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
+from ..arrays import FloatArray
 from ..cell.cell import Cell
 from ..display import counted, in_line
 from ..handling.handling import Handling
@@ -16,9 +19,7 @@ from ..program.tool import Load
 from ..program.world_zone import WorldZone
 from ..spatial.pose import IDENTITY, Pose
 from .actions import Action
-from .carried import CarriedMoves
 from .gates import Gate
-from .pace import ClockPace
 
 Driven = tuple[Run, tuple[Action, ...]]
 """A program as driven, and what it does with signals."""
@@ -38,6 +39,73 @@ class Passing:
     drive: Callable[[Collection[int]], Driven]
     run: Run
     actions: tuple[Action, ...]
+
+
+@dataclass(frozen=True)
+class ClockPace:
+    """Stretches of a robot's own time that take longer.
+
+    Args:
+        own: (K,) s, times of its own at which the pace changes, from 0 on, rising.
+        clock: (K,) s, the same as they pass, waits left out.
+    """
+
+    own: FloatArray
+    clock: FloatArray
+
+    @classmethod
+    def steady(cls) -> ClockPace:
+        """As driven."""
+        return cls(np.zeros(1), np.zeros(1))
+
+    @classmethod
+    def slower(cls, spans: Sequence[tuple[FloatArray, FloatArray]]) -> ClockPace:
+        """With spans that take longer.
+
+        Args:
+            spans: times (K,) s of its own, in their order, and s since the span began at which
+                they pass.
+        """
+        own, clock = [np.zeros(1)], [np.zeros(1)]
+        for times, passed in spans:
+            own.append(times)
+            clock.append(clock[-1][-1] + times[0] - own[-2][-1] + passed)
+        return cls(np.concatenate(own), np.concatenate(clock))
+
+    def passed(self, own: FloatArray) -> FloatArray:
+        """s on the clock at times of its own; beyond all changes it is as driven."""
+        return _mapped(own, self.own, self.clock)
+
+    def at(self, own: float) -> float:
+        """The same of one time."""
+        return float(self.passed(np.array([own]))[0])
+
+    def own_at(self, clock: FloatArray) -> FloatArray:
+        """s of its own at times on the clock."""
+        return _mapped(clock, self.clock, self.own)
+
+
+def _mapped(t: FloatArray, known: FloatArray, other: FloatArray) -> FloatArray:
+    inside = np.interp(t, known, other)
+    before, behind = np.minimum(t - known[0], 0.0), np.maximum(t - known[-1], 0.0)
+    # What is infinite stays so.
+    return np.asarray(inside + before + behind)
+
+
+@dataclass(frozen=True)
+class CarriedMoves:
+    """What another robot turns under a program, and the moves on which it turns.
+
+    Args:
+        carrier: the robot that turns it.
+        axes: names of the carrier's axes, and of the robot's own that stand for them.
+        blocks: moves in a row, by index, and those of the carrier that are made together with them;
+            none where it stands while the robot works on it.
+    """
+
+    carrier: str
+    axes: Mapping[str, str]
+    blocks: tuple[Mapping[int, int], ...]
 
 
 @dataclass(frozen=True, repr=False)
@@ -131,6 +199,21 @@ class HandOver:
     given: str
     taker: str
     taken: str
+
+
+@dataclass(frozen=True, slots=True)
+class HeldTogether:
+    """A part that two robots carry together, on moves that they make together.
+
+    Args:
+        holder: the robot in whose cell it is.
+        part: what that calls it.
+        other: that holds it, too.
+    """
+
+    holder: str
+    part: str
+    other: str
 
 
 @dataclass(frozen=True, repr=False)

@@ -17,7 +17,7 @@ from ..robot.pose_table import pose_at
 from ..spatial.pose import IDENTITY, Pose
 from .gates import Gate, GateKind, Input
 from .plc import PLC
-from .station import HandOver, Wire, signal_key
+from .station import HandOver, HeldTogether, Wire, signal_key
 
 _DELAY = {"ms": 1e-3, "s": 1.0}
 _LONGEST = 60.0
@@ -61,6 +61,7 @@ class StationFile:
         file: that it is.
         zones: spaces with outputs.
         hand_overs: parts that robots hand to each other.
+        held_together: parts that two robots carry together.
     """
 
     members: tuple[MemberFile, ...]
@@ -73,6 +74,7 @@ class StationFile:
     file: Path
     zones: tuple[WorldZone, ...] = ()
     hand_overs: tuple[HandOver, ...] = ()
+    held_together: tuple[HeldTogether, ...] = ()
 
 
 def read_station_file(path: str | Path) -> StationFile:
@@ -110,6 +112,10 @@ def read_station_file(path: str | Path) -> StationFile:
         _hand_over(table, {member.name.casefold(): member.name for member in members})
         for table in file.listed_tables("hand_over")
     )
+    held_together = tuple(
+        _held_together(table, {member.name.casefold(): member.name for member in members})
+        for table in file.listed_tables("held_together")
+    )
     file.finish()
     names = {member.name.casefold() for member in members} | {PLC}
     made = StationFile(
@@ -123,6 +129,7 @@ def read_station_file(path: str | Path) -> StationFile:
         Path(path),
         zones,
         hand_overs,
+        held_together,
     )
     _check_robots(made, names)
     return made
@@ -280,6 +287,17 @@ def _hand_over(table: TomlTable, robots: Mapping[str, str]) -> HandOver:
     return HandOver(*found)
 
 
+def _held_together(table: TomlTable, robots: Mapping[str, str]) -> HeldTogether:
+    """``[[held_together]]``: ``part = "left.bar"``, ``by = "right"``."""
+    robot, dot, part = table.text("part").partition(".")
+    if not dot or not part.strip():
+        raise table.error("part", "names a part of a robot's cell: left.bar")
+    holder = robots.get(robot.strip().casefold(), robot.strip())
+    other = table.choice("by", [name for name in robots.values() if name != holder])
+    table.finish()
+    return HeldTogether(holder, part.strip(), other)
+
+
 def _is_range(given: object) -> bool:
     if not isinstance(given, list) or len(given) != 3:
         return False
@@ -318,6 +336,7 @@ def _check_robots(made: StationFile, names: set[str]) -> None:
         for each in made.hand_overs
         for robot, part in ((each.giver, each.given), (each.taker, each.taken))
     ]
+    told += [("held_together", f"{each.holder}.{each.part}") for each in made.held_together]
     gates = {signal_key(f"{PLC}.{name}") for name in made.gates}
     for where, name in told:
         robot, dot, rest = name.partition(".")

@@ -23,7 +23,7 @@ from ..program.program import Program
 from ..program.signal import Meet
 from ..program.zone import Fine
 from .actions import Action, MeetingPoint, stand_of
-from .pace import ClockPace
+from .station import ClockPace
 
 IdOf = Callable[[int], str | None]
 """The id of a move by its index; None for none."""
@@ -149,7 +149,7 @@ def synchronised(
         runs: programs as driven.
         actions: of these.
         together: see `moves_together`.
-        carried: robots that work on what others turn.
+        carried: robots that work on what others turn, or carry a part with another one.
     """
     spans: dict[str, dict[int, tuple[FloatArray, FloatArray]]] = {name: {} for name in runs}
     meets: dict[str, list[Action]] = {name: [] for name in actions}
@@ -270,6 +270,19 @@ def _stands(run: Run, index: int) -> bool:
     return index == 0 or isinstance(run.program.moves[index - 1].zone, Fine)
 
 
+def own_span(run: Run, index: int) -> tuple[float, float]:
+    """s of its own at which a robot begins and ends a move, waits behind it left out."""
+    moves, timing = run.path.route.moves, run.timing
+    begins = timing.begins()
+    k = bisect_left(moves, index)
+    if k == len(moves) or moves[k] != index:
+        # It leads nowhere: the robot stands there.
+        at = float(begins[k]) if k < len(moves) else run.duration
+        return at, at
+    begin = float(begins[k])
+    return begin, begin + float(timing.settled_durations()[k])
+
+
 @dataclass(frozen=True)
 class _Progress:
     """How far a robot is on a move when.
@@ -288,15 +301,10 @@ class _Progress:
     @classmethod
     def of(cls, run: Run, index: int) -> _Progress:
         """Of a move by its index."""
-        moves, timing = run.path.route.moves, run.timing
-        begins = timing.begins()
-        k = bisect_left(moves, index)
-        if k == len(moves) or moves[k] != index:
-            # It leads nowhere: the robot stands there.
-            at = float(begins[k]) if k < len(moves) else run.duration
-            return cls(at, at, np.empty(0), np.empty(0))
-        begin = float(begins[k])
-        end = begin + float(timing.settled_durations()[k])
+        begin, end = own_span(run, index)
+        if index not in run.path.route.moves:
+            return cls(begin, end, np.empty(0), np.empty(0))
+        timing, k = run.timing, bisect_left(run.path.route.moves, index)
         rows = np.flatnonzero(timing.interval_segments == k)
         sample = timing.intervals.sample[rows]
         first, last = run.path.sigma[sample[0]], run.path.sigma[sample[-1] + 1]

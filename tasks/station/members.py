@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from ...core.dialect import SignalWords
     from ...core.program.program import Program
     from ...core.station.actions import MeetingPoint
-    from ...core.station.carried import CarriedMoves, Carrier
-    from ...core.station.station import StationRobot
+    from ...core.station.carried import Carrier
+    from ...core.station.station import CarriedMoves, StationRobot
     from ...core.station.station_file import MemberFile, StationFile
     from ...core.station.synchronised import IdOf, Together
 

@@ -53,6 +53,7 @@ def open_station(source: Sources, say: Callable[[str], None]) -> OpenedStation:
     """
     from ...core.station.actions import actions_of, unknown_of
     from ...core.station.hand_over import check_hand_overs
+    from ...core.station.held_together import check_held_together
     from ...core.station.station import RobotStation
     from ...core.station.station_file import read_station_file
     from ...core.station.synchronised import moves_together, synchronised
@@ -102,8 +103,14 @@ def open_station(source: Sources, say: Callable[[str], None]) -> OpenedStation:
         why = "; ".join(note.message for note in unknown if "not followed" in note.message)
         raise InputError(f"{error}; {why}" if why else str(error)) from None
     _check_starts(file, members)
-    carried = [name for name, member in members.items() if member.carried]
+    carried = {name for name, member in members.items() if member.carried}
+    carried |= {name for each in file.held_together for name in (each.holder, each.other)}
     shared = synchronised({n: m.run for n, m in members.items()}, actions, together, carried)
+    try:
+        for each in file.held_together:
+            check_held_together(each, members, shared.paces, together)
+    except InputError as error:
+        raise InputError(f"{file.file}: {error}") from None
     actions = shared.actions
     members = {n: replace(m, pace=shared.paces.get(n, m.pace)) for n, m in members.items()}
     station = RobotStation(

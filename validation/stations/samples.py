@@ -21,8 +21,7 @@ from ...core.handling.arrangement import PlacedPart
 from ...core.handling.handling import Handling
 from ...core.station.actions import Action, actions_of
 from ...core.station.clock import Schedule, StationClock, StationRun
-from ...core.station.pace import ClockPace
-from ...core.station.station import RobotStation, StationRobot
+from ...core.station.station import ClockPace, RobotStation, StationRobot
 from ...tasks.results.stations import DrivenStation
 from ...tasks.setup import setup_of_program
 from .files import MAKES

@@ -16,8 +16,7 @@ from flyby.core.station.awaited import bearing
 from flyby.core.station.clock import StationClock
 from flyby.core.station.gates import Gate, GateKind, Input
 from flyby.core.station.orders import explore
-from flyby.core.station.pace import ClockPace
-from flyby.core.station.station import RobotStation, Wire
+from flyby.core.station.station import ClockPace, RobotStation, Wire
 
 Doings = dict[str, tuple[Action, ...]]
 

@@ -214,6 +214,73 @@ def test_two_arms_hold_one_part(tmp_path: Path) -> None:
     assert abs(heights[0] - heights[1]).max() < 0.01
 
 
+def carried_by_both(folder: Path, *, apart: float = 0.0, rest: str = "") -> Path:
+    """A bar that the one takes lies in the other's hand as well, and both lift it together."""
+    text = "clearance_mm = 5\n[allow]\n"
+    text += 'pairs = [["one.bar", "two.J6"], ["one.bar", "two.J5"]]\n'
+    for name, y, speed in (("one", 0, "v200"), ("two", 450, "v100")):
+        line = "MoveL \\ID:={}, [[420,{},{}],[0,0,1,0],[0,0,0,0],{}], {}, fine, tool0"
+        off = apart if name == "two" else 0.0
+        moves = [
+            line.format(10, y + off, 450, UNUSED, speed),
+            line.format(20, y, 350, UNUSED, speed),
+        ]
+        first = f"MoveJ [[420,{y},350],[0,0,1,0],[0,0,0,0],{UNUSED}], v200, fine, tool0"
+        above = f"MoveJ [[400,{y},360],[0,0,1,0],[0,0,0,0],{UNUSED}], v200, fine, tool0"
+        begun = ["ConfJ \\Off", "ConfL \\Off", above, first, "SetDO grip, 1", "SyncMoveOn s1, all"]
+        body = ";\n    ".join([*begun, *moves, "SyncMoveOff s2", "SetDO grip, 0"])
+        (folder / f"{name}.mod").write_text(
+            f"MODULE {name}\n  VAR syncident s1;\n  VAR syncident s2;\n"
+            '  PERS tasks all{2} := [["T1"],["T2"]];\n'
+            f"  PROC main()\n    {body};\n  ENDPROC\nENDMODULE\n"
+        )
+        cell = f'robot = "abb/irb120-3-058"\nbase = {{ xyz_mm = [0, {y}, 0] }}\n'
+        if name == "one":
+            cell += (
+                '[[part]]\nname = "bar"\nbox_mm = [30, 400, 20]\nmass_kg = 1\n'
+                "pose = { xyz_mm = [420, 225, 335] }\nattach = 'grip, 1'\nrelease = 'grip, 0'\n"
+            )
+        (folder / f"{name}.toml").write_text(cell)
+        text += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.mod"\n'
+    file = folder / "station.toml"
+    file.write_text(text + rest)
+    return file
+
+
+HELD = '[[held_together]]\npart = "one.bar"\nby = "two"\n'
+
+
+def test_two_arms_carry_one_part(tmp_path: Path) -> None:
+    """Both hands stay where they took it, though one is programmed at half the speed."""
+    made = flyby.station(carried_by_both(tmp_path, rest=HELD))
+    (pair,) = made.clearances
+    assert pair.in_time.proven, made.findings()
+    first = made.station.members["one"].run.timing.begins()[-2]
+    begin = made.run.schedules["one"].clocked(np.array([[first, first]]))[0, 1]
+    t = np.linspace(begin, made.duration, 300)
+    heights = []
+    for name, schedule in made.run.schedules.items():
+        trajectory = made.station.members[name].run.trajectory
+        heights.append(np.interp(schedule.own(t), trajectory.t, trajectory.position[:, 2]))
+    assert abs(heights[0] - heights[1]).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("apart", "rest", "words"),
+    [
+        (20.0, HELD, r"two's move 3 .*two\.mod:.*moves its hand by 20\.\d mm .*one\.mod:"),
+        (0.0, HELD.replace("one.bar", "one.rod"), "unknown part of the cell of one 'rod'.*bar"),
+        (0.0, HELD.replace('"two"', '"one"'), "by"),
+        (0.0, HELD.replace("one.bar", "bar"), "names a part of a robot's cell"),
+    ],
+)
+def test_what_two_arms_cannot_carry_is_refused(
+    tmp_path: Path, apart: float, rest: str, words: str
+) -> None:
+    with pytest.raises(InputError, match=words):
+        flyby.station(carried_by_both(tmp_path, apart=apart, rest=rest), no_proof=True)
+
+
 def test_an_output_comes_as_early_as_it_may(write: Write) -> None:
     """The first drives on for a while before it lets the second in: the output moves up to where it
     has turned away, and no farther."""
