@@ -112,10 +112,13 @@ def moves_together(
     found: dict[tuple[str, int], list[TogetherBlock]] = {}
     for name, program in programs.items():
         counts: dict[str, int] = {}
+        inside: set[int] = set()
         for block in _blocks(name, program, meetings[name], ids[name]):
             label = block.begins.does.label
             nth = counts[label] = counts.get(label, 0) + 1
             found.setdefault((label, nth), []).append(block)
+            inside |= {move.index for move in block.moves}
+        _check_outside(name, program, ids[name], inside)
     several = {key: blocks for key, blocks in found.items() if len(blocks) > 1}
     for blocks in several.values():
         _check(blocks)
@@ -215,6 +218,22 @@ def _blocks(
                 for i, one in zip(behind, called, strict=True)
             ),
         )
+
+
+def _check_outside(name: str, program: Program, ids: IdOf | None, inside: set[int]) -> None:
+    """No move has an ID where none are made together.
+
+    Raises:
+        InputError: one has.
+    """
+    for i, move in enumerate(program.moves):
+        found = None if ids is None or i in inside else ids(i)
+        if found is not None:
+            said = TogetherMove(name, i, found, move.statement).said
+            raise InputError(
+                f"{said} has ID {found}, and no others are made together with it there: it stands "
+                "behind no SyncMoveOn, and controllers stop at it"
+            )
 
 
 def _called(name: str | None) -> str:

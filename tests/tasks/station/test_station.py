@@ -414,6 +414,15 @@ def test_an_id_that_one_task_lacks_is_named_with_both_lines(
         assert word in str(caught.value), str(caught.value)
 
 
+def test_an_id_where_nothing_is_made_together_is_named(write: Write) -> None:
+    programs = {
+        "one": ["go 0", "SyncMoveOn s1, all", absolute(1, 10), "SyncMoveOff s2"],
+        "two": ["go 0", absolute(1, 10)],
+    }
+    with pytest.raises(FlybyError, match=r"station\.toml: two's move 2 \(.*two\.mod:7.*SyncMoveOn"):
+        station(write(programs))
+
+
 def test_samples_that_seem_too_near_hide_nothing(
     write: Write, monkeypatch: pytest.MonkeyPatch
 ) -> None:
