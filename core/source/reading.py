@@ -149,15 +149,16 @@ def _to_known_places(
     options: ReadOptions,
     read: Callable[[Files, str, ReadOptions], Program],
 ) -> Program:
-    """Read; where moves to what nobody knows leave nothing to drive, another branch is taken, if
-    one leads to what is known: of a program that a computer sends commands to, one that needs no
-    numbers of it.
+    """Read; where moves to what nobody knows leave nothing to drive, or none is reached, another
+    branch is taken, if one leads to what is known: of a program that a computer sends commands to,
+    one that needs no numbers of it.
 
     Raises:
         SourceError: it cannot be read.
     """
     program = _to_an_end(files, main, options, read)
-    if not options.answers.goes_on or not program.moves or _is_driven(program, options.start):
+    moving = bool(program.moves) or any(entry.moves for entry in program.entries)
+    if not options.answers.goes_on or not moving or _is_driven(program, options.start):
         return program
     branches = [q for q in program.questions if q.kind is QuestionKind.BRANCH and not q.answered]
     for branch in reversed(branches[-_TRIED:]):
@@ -168,9 +169,10 @@ def _to_known_places(
             except FlybyError:
                 break  # there are no more branches, or nothing can be made of this one
             if number != branch.taken and _is_driven(other, options.start):
+                leads = "drives to what nobody knows" if program.moves else "leads to no move"
                 message = (
-                    f"branch {branch.taken} drives to what nobody knows: branch {number}, whose "
-                    "moves are known, is taken instead"
+                    f"branch {branch.taken} {leads}: branch {number}, whose moves are known, "
+                    "is taken instead"
                 )
                 return replace(other, notes=(Note(message, span=branch.span), *other.notes))
     return program
