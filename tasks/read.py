@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
+from ..core.program.entry_point import ALL
 from ..core.source.text.files import refuse_no_text
 from .backup.finding import find_backup
-from .backup.opening import read_task, setup_in, task_of, told_of_setup
+from .backup.opening import holds_entry, read_task, setup_in, task_of, told_of_setup
 from .backup.surrounding import backup_round, surrounding_note
 from .catalogue import registry
 from .fitting import arms_that_fit
@@ -302,8 +303,8 @@ def backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
     """The backup that a source is; None if it is a program.
 
     Beside a robot that is named, a program file is read by itself, and so is a folder with programs
-    in it that is no backup itself; if none is, the backup may say which. A cell says what stands
-    around: the arm itself is the backup's.
+    in it that is no backup itself, unless an entry says which of several; if none is, the backup
+    may say which. A cell says what stands around: the arm itself is the backup's.
     """
     if isinstance(source, str) and ("\n" in source or not source):
         return None
@@ -316,14 +317,23 @@ def backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
     if path.is_file():
         return None if options.robot is not None else find_backup(path, registry())
     found = find_backup(path, registry(), marked=True)
+    if found is None and options.entry not in (None, ALL) and len(_programs_of(path)) > 1:
+        several = find_backup(path, registry())
+        if several is not None and holds_entry(several, options.entry):
+            found = several if _all_parsed(path, several.vendor, options) else None
     return found if found is not None and found.root == path else None
 
 
 def _holds_program(path: Path) -> bool:
     """Whether a path is a program file, or a folder with one in it."""
+    return bool(_programs_of(path))
+
+
+def _programs_of(path: Path) -> list[Path]:
+    """A program file, or those in a folder."""
     files = path.iterdir() if path.is_dir() else [path]
     suffixes = {suffix for vendor in registry().vendors.values() for suffix in vendor.suffixes}
-    return any(file.suffix.lower() in suffixes and file.is_file() for file in files)
+    return [file for file in files if file.suffix.lower() in suffixes and file.is_file()]
 
 
 def _read_backup(backup: Backup, options: SourceOptions) -> Program:
@@ -399,6 +409,17 @@ def _program_in(folder: Path, vendor: Vendor, robot: Robot | None, options: Sour
     names = "".join(f", {file.name}" for file in found or files).replace(",", ":", 1)
     why = "".join(f"; not read: {error}" for _, error in broken)
     raise InputError(f"{folder} is a folder; name a program file in it{names}{why}")
+
+
+def _all_parsed(folder: Path, vendor: str, options: SourceOptions) -> bool:
+    """Whether none of a folder's programs is damaged: that might be the one that is meant."""
+    own = registry().find_vendor(vendor)
+    errors = {
+        file: _error(file, own, None, options, options.entry)
+        for file in _programs_of(folder)
+        if file.suffix.lower() in own.suffixes
+    }
+    return not any(isinstance(e, ParseError) and _of(e, f) for f, e in errors.items())
 
 
 def _error(

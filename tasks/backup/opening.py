@@ -79,6 +79,11 @@ def task_of(backup: Backup, name: str | None, entry: str | None = None) -> Task:
     )
 
 
+def holds_entry(backup: Backup, entry: str) -> bool:
+    """Whether a task of a backup has a routine that is asked for."""
+    return any(_entry(task, entry) is not None for task in backup.tasks)
+
+
 def _entry(task: Task, asked: str | None) -> BackupEntry | None:
     """The routine of a task that is asked for: by its name, maybe with arguments, or by that of its
     file, whose signs no routine's name may have.

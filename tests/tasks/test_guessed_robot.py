@@ -63,6 +63,23 @@ def test_a_folder_names_the_arm_too(tmp_path: Path) -> None:
     assert found == "abb/irb4600-60-205" and "'irb4600-60-205' stands in" in said
 
 
+def test_a_backup_that_says_nothing_of_its_robot_is_driven_by_one(tmp_path: Path) -> None:
+    folder = tmp_path / "PROGMOD"
+    folder.mkdir()
+    rapid(folder, at(1200, 0, 900), at(1200, 50, 900), head="! by the IRB 4600-60/2.05")
+    robot, said = taken(tmp_path)
+    assert robot == "abb/irb4600-60-205" and "stands in its text or folder" in said
+    program = read_or_guess(tmp_path, SourceOptions())
+    assert len(program.moves) == 2 and program.setup.robot.name == robot
+    # What is written is right for its own robot alone, and the backup says what would tell.
+    assert with_robot(tmp_path, SourceOptions(), writes=True) == (SourceOptions(), ())
+    syspar = tmp_path / "SYSPAR"
+    syspar.mkdir()
+    text = 'MOC:CFG_1.0:6:0::\n#\nROBOT:\n\n      -name "ROB_1" -use_robot_type "ROB1_777_9.9_1"\n'
+    (syspar / "MOC.cfg").write_text(text)
+    assert taken(tmp_path) == (None, "")
+
+
 def test_what_hangs_on_an_unknown_tool_counts_where_nothing_else_does(tmp_path: Path) -> None:
     robot, said = taken(rapid(tmp_path, at(1700, 0, 900, "tGun"), at(1700, 90, 900, "tGun")))
     assert robot is not None

@@ -260,6 +260,15 @@ def test_the_mounting_turns_the_base(build: Build, tmp_path: Path) -> None:
     np.testing.assert_allclose(up, (0.0, 1.0, 0.0), atol=1e-12)
 
 
+def test_one_of_several_scripts_is_chosen_beside_a_robot_that_is_named(tmp_path: Path) -> None:
+    for name, count in (("pick", 1), ("put", 2)):
+        moves = f"  movej({list(A)})\n" * count
+        (tmp_path / f"{name}.script").write_text(f"def {name}():\n{moves}end\n")
+    assert len(flyby.read(tmp_path, robot="ur/ur5e", entry="put").moves) == 2
+    with pytest.raises(InputError, match=r"name a program file in it: pick\.script, put\.script"):
+        flyby.read(tmp_path, robot="ur/ur5e")
+
+
 def test_scripts_beside_trees_are_not_left_out_silently(build: Build, tmp_path: Path) -> None:
     runs = (
         '<Script type="File"><cachedContents/><file resolves-to="file">grip.script</file></Script>'
