@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import flyby
-from flyby.core.errors import FlybyError, InputError
+from flyby.core.errors import FlybyError, InputError, OptionError
 from flyby.core.registry import all_listed, find_vendor
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
@@ -71,8 +71,8 @@ def test_a_backup_that_says_nothing_of_its_robot_is_driven_by_one(tmp_path: Path
     assert robot == "abb/irb4600-60-205" and "stands in its text or folder" in said
     program = read_or_guess(tmp_path, SourceOptions())
     assert len(program.moves) == 2 and program.setup.robot.name == robot
-    # What is written is right for its own robot alone, and the backup says what would tell.
-    assert with_robot(tmp_path, SourceOptions(), writes=True) == (SourceOptions(), ())
+    with pytest.raises(OptionError, match="which robot is .* for.*abb/irb4600-60-205"):
+        with_robot(tmp_path, SourceOptions(), writes=True)
     syspar = tmp_path / "SYSPAR"
     syspar.mkdir()
     text = 'MOC:CFG_1.0:6:0::\n#\nROBOT:\n\n      -name "ROB_1" -use_robot_type "ROB1_777_9.9_1"\n'

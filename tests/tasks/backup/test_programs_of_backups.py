@@ -292,7 +292,7 @@ def test_the_tasks_of_a_backup_are_a_station(tmp_path: Path) -> None:
     assert places == [1.2, -1.2]
     (pair,) = made.clearances
     assert pair.least < 3.0 and made.deadlock is None
-    assert any("is a backup: nobody says what joins" in str(note) for note in made.notes)
+    assert any("of backups nobody says what joins" in str(note) for note in made.notes)
     file = tmp_path / "station.toml"
     file.write_text(
         "clearance_mm = 10\n"
