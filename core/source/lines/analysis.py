@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from ...dialect import Unsaid
 from ..execution.steps import NOTHING, Exit, Step
 from .expressions import Datum, Expression, Number, Operation, data_in
-from .program import Grammar, LineProgram
+from .program import Grammar, LineProgram, routine_key
 from .settings import Settings
 from .statements import (
     Assign,
@@ -87,7 +87,7 @@ class Statements:
             reads = self.reads([statement.condition])
             return Step(reads=reads, inner=inner, exhaustive=len(inner) > 1)
         if isinstance(statement, Call):
-            body = self._program.routines.get(statement.routine.lower())
+            body = self._program.routines.get(routine_key(statement.routine))
             given = self.reads(statement.arguments)
             word = self._grammar.argument
             taken = frozenset(f"{word}[{k + 1}]" for k in range(len(statement.arguments)))

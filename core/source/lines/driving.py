@@ -23,12 +23,13 @@ from .amounts import Amount, overridden
 from .expressions import Datum, Expression, Number, Operation, parse_all
 from .forms import FormGrammar, Found
 from .motions import MotionWords
-from .moves import ArcPoints, made_move
+from .moves import ArcPoints, made_move, said_beside, said_otherwise
 from .positions import FrameRegisters, Place, Placed, PositionForm
-from .program import Initial, Said
+from .program import Initial, Said, several
 from .statements import (
     AssignAll,
     Drive,
+    Label,
     Line,
     NumberedPoint,
     Numbers,
@@ -80,9 +81,10 @@ class MotionGrammar(FormGrammar):
     The form ``motion`` has the groups ``kind`` and ``point``, and of these those that the language
     has: ``via``, the auxiliary point of an arc; ``pace``, the words of a speed, in it its ``speed``
     and ``unit``, and ``share``, one of acceleration in %; ``zone``, the words of a zone, in it its
-    ``word``, ``size`` and ``behind``. What settings set needs no group, and counts where a motion
-    says nothing of it itself; ``flying`` has the word by which it says whether a zone that they set
-    counts, or nothing. The form ``point`` has ``name``, ``values`` and ``kind``; the form
+    ``word``, ``size`` and ``behind``; ``tool`` and ``frame``, the numbers of those that it names;
+    ``step``, its own number, where jumps lead. What settings set needs no group, and counts where
+    a motion says nothing of it itself; ``flying`` has the word by which it says whether a zone that
+    they set counts, or nothing. The form ``point`` has ``name``, ``values`` and ``kind``; the form
     ``framed``, of a tool or frame that is set, ``word`` and ``place`` or ``values``. An arc's
     auxiliary point that stands on a line of its own is the form ``via``, with ``point``.
     ``approach`` and ``depart`` are motions that end a ``distance`` against the tool's z from their
@@ -93,7 +95,9 @@ class MotionGrammar(FormGrammar):
         words: of speeds and zones that motions state; None where settings say all.
         kinds: ``J``, ``L`` or ``C`` by the ``kind`` of a motion, the one that is written first; of
             others it is the last letter.
-        chained: kinds of arcs that have one point a line (`ArcPoints`).
+        chained: kinds of arcs that have one point a line, the first of which is where they begin
+            (`ArcPoints`).
+        paired: kinds of arcs of two lines: the first is what they go through, the second their end.
         joints: kinds of points that are joint values.
         inline: a position at the motion itself, with the groups ``kind`` and ``values``.
         written_inline: how such a pose, and such joint values, are written, of their ``numbers``:
@@ -110,6 +114,7 @@ class MotionGrammar(FormGrammar):
     words: MotionWords | None = None
     kinds: ClassVar[Mapping[str, str]] = {}
     chained: frozenset[str] = frozenset()
+    paired: frozenset[str] = frozenset()
     joints: frozenset[str] = frozenset()
     inline: re.Pattern[str] = re.compile(r"(?!)(?P<kind>)(?P<values>)")
     written_inline: tuple[str, str] = ("", "")
@@ -138,6 +143,7 @@ class MotionGrammar(FormGrammar):
         self._arc = ArcPoints()
         self._kinds = {word.upper(): letter for word, letter in self.kinds.items()}
         self._via: tuple[Line, Operand] | None = None
+        self._beside: dict[str, str] = {}  # of the line of an arc's auxiliary point
         if (held := self.frames) is not None:
             none = Numbers.of(self.form.numbers(IDENTITY))
             words = [word.upper() for word in (held.tool, held.frame) if word]
@@ -202,13 +208,22 @@ class MotionGrammar(FormGrammar):
         name, numbers = self.datum(line, found, "name"), self._values(line, found)
         return NumberedPoint(line.span, name, numbers, self.kind_of(found))
 
+    def ended(self) -> None:
+        """See `Grammar`: an arc has an end."""
+        if self._via is not None:
+            raise InputError("an arc has no end: only what it goes through is stated")
+        self._arc.end("")
+
     def motion(self, line: Line, found: Found) -> Said:
-        """A motion, of those on one line each; see `drive`."""
-        return self.drive(line, found)
+        """A motion, of those on one line each, at its ``step``; see `drive`."""
+        step = found.groupdict().get("step")
+        labels = (Label(line.span, step.upper()),) if step else ()
+        return (*labels, *several(self.drive(line, found)))
 
     def via(self, line: Line, found: Found) -> Said:
         """The ``point`` that the arc on the next line goes through."""
         self._via = line, self.place(line, found, "point")
+        self._beside = said_beside(found)
         return None
 
     def approach(self, line: Line, found: Found) -> Said:
@@ -240,7 +255,10 @@ class MotionGrammar(FormGrammar):
         said = found["kind"].upper()
         point = self.place(line, found, "point") if back is None else back
         kind = self._kinds.get(said, said[-1])
-        given = found.groupdict()
+        given, beside = found.groupdict(), said_beside(found)
+        if said in self.paired and self._via is None and via is None:
+            self._via, self._beside = (line, point), beside
+            return None
         via = self.place(line, found, "via") if given.get("via") else via
         if self._via is not None:
             (first, via), self._via = self._via, None
@@ -255,22 +273,31 @@ class MotionGrammar(FormGrammar):
                 raise InputError(f"{said} is no kind of motion that `kinds` has")
             if (kind == "C") != (via is not None):
                 raise InputError("an arc has two points, other motions have one")
+        before, self._beside = self._beside, {} if kind else beside
         if not kind:
             return None
+        other = said_otherwise(before, beside) if kind == "C" else ""
+        held = self._held(found)
+        unit = given.get("unit") or ""
         speed = self._stated(line, found, UseKind.SPEED, "pace", "speed", "share")
         zone = self._stated(line, found, UseKind.ZONE, "zone", "size", "behind")
 
         def build(
             target: Numbers, paces: Numbers, sizes: Numbers, through: Numbers, now: Situation
         ) -> Move:
-            goal = moved(self.placed(target, now), now) if back is None else self._gone(target, now)
+            if back is not None:
+                goal = self._gone(target, now)
+            else:
+                goal = moved(self._with(self.placed(target, now), held, now), now)
+            if other:
+                now.note(other)
             middle = self.placed(through, now).target if kind == "C" else None
             settings, joint = self.settings, kind == "J"
             if self.words is None or not self._says(found, UseKind.SPEED):
                 pace = settings.speed(paces, joint)
             else:
-                unit = (given.get("unit") or "") if given.get("speed") else None
-                pace = self.words.speed_of(kind, unit, paces, bool(given.get("share")))
+                told = unit if beside["speed"] else None
+                pace = self.words.speed_of(kind, told, paces, bool(beside["share"]))
             if self.override:
                 pace = overridden(pace, now.setting(self.override, 100.0) / 100, joint)
             if settings.flying and not found["flying"]:
@@ -278,12 +305,29 @@ class MotionGrammar(FormGrammar):
             elif self.words is None or not self._says(found, UseKind.ZONE):
                 near = settings.zone_of(sizes, joint)
             else:
-                near = self.words.zone_of(given.get("word"), sizes)
+                near = self.words.zone_of(beside["word"] or None, sizes)
             return made_move(
                 kind, goal.target, pace, near, goal.tool, goal.work_object, middle, events
             )
 
         return Drive(line.span, point, speed, zone, build, via)
+
+    def _held(self, found: Found) -> Place | None:
+        """The tool and the frame that a motion itself names; None where that is not numbers."""
+        given = found.groupdict()
+        place = self.kind_of(found) if given.get("tool") or given.get("frame") else None
+        return place if isinstance(place, Place) else None
+
+    def _with(self, placed: Placed, held: Place | None, now: Situation) -> Placed:
+        """With the tool and the frame that a motion names, in place of those of its point."""
+        if held is None or self.frames is None:
+            return placed
+        tool, frame = self.frames.both(self.form, held, now)
+        return replace(
+            placed,
+            tool=placed.tool if held.tool is None else tool,
+            work_object=placed.work_object if held.frame is None else frame,
+        )
 
     def _gone(self, distance: Numbers, now: Situation) -> Placed:
         """A distance back from where the robot stands."""

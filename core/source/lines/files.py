@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..reading import ReadOptions
 from ..text.files import SourceFile, read_source
+from .program import routine_key
 
 
 def with_called(
@@ -22,8 +23,8 @@ def with_called(
         path: of the program.
         options: name further files, or all that there are.
         suffixes: of programs, in lower case.
-        called: names of the programs that a text calls; a file is called as its name says, upper
-            and lower case are the same.
+        called: names of the programs that a text calls; a file is called as its name says
+            (`routine_key`).
         always: names of files, in lower case, that count wherever they stand beside the program.
 
     Returns:
@@ -39,13 +40,13 @@ def with_called(
     programs: dict[str, Path] = {}
     for file in around:
         if file.suffix.lower() in suffixes:
-            programs.setdefault(file.stem.lower(), file)
+            programs.setdefault(routine_key(file.stem), file)
         if file.name.lower() in always:
             files.setdefault(str(file), read_source(file))
     waiting = [files[str(path)].text]
     while waiting:
         for name in called(waiting.pop()):
-            found = programs.pop(name.lower(), None)
+            found = programs.pop(routine_key(name), None)
             if found is not None and str(found) not in files:
                 files[str(found)] = read_source(found)
                 waiting.append(files[str(found)].text)

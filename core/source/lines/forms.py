@@ -71,7 +71,7 @@ class FormGrammar(Grammar):
     longest: int = 1000
     second: float = 1.0
     helpers: ClassVar[frozenset[str]] = frozenset(
-        {"statement", "parse", "datum", "point_at", "options", "holds"}
+        {"statement", "parse", "datum", "point_at", "options", "holds", "ended"}
     )
 
     def __init__(self) -> None:

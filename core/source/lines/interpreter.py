@@ -32,7 +32,7 @@ from ..reading import ReadOptions
 from .analysis import Statements, expressions_of
 from .data import Data
 from .expressions import Datum, Expression, Number
-from .program import Grammar, LineProgram
+from .program import Grammar, LineProgram, routine_key
 from .statements import (
     Assign,
     AssignAll,
@@ -93,7 +93,7 @@ def run_lines(program: LineProgram, grammar: Grammar, options: ReadOptions) -> P
     asked = options.entry
     if asked == ALL and ALL not in program.routines:
         return Program((), PurePath(program.file).stem, entries=run.entry_points(None))
-    name = run.first() if asked is None else asked.lower()
+    name = run.first() if asked is None else routine_key(asked)
     body = program.routines.get(name)
     if body is None or (asked is not None and not name):
         known = listed(run.entry_points(None))
@@ -334,7 +334,7 @@ class _Interpreter:
 
     def _call(self, statement: Call) -> None:
         name = statement.routine
-        body = self._program.routines.get(name.lower())
+        body = self._program.routines.get(routine_key(name))
         if body is None:
             if self.course.skips(name, statement.span):
                 self.outputs.forget()

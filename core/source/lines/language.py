@@ -94,13 +94,14 @@ class LineWriter:
 
     # ------------------------------------------------------------- of which moves are made
 
-    def motion(self, move: Move, *beside: str) -> str:
-        """The line, or lines, of a motion to its points; ``beside``: what else these say."""
+    def motion(self, move: Move, *beside: str, **others: object) -> str:
+        """The line, or lines, of a motion to its points; ``beside``: what else these say;
+        ``others``: what else `MotionWords.motion` has a place for."""
         assert self.grammar.words is not None
         letter, targets = said(move)
         word = next((word for word, one in self.grammar.kinds.items() if one == letter), letter)
         points = (self.name(one, *beside) for one in targets)
-        return self.grammar.words.text(move, *points, kind=word)
+        return self.grammar.words.text(move, *points, kind=word, **others)
 
     def name(self, target: Target, *beside: str) -> str:
         """What a point is called, which is declared if it is new."""

@@ -29,10 +29,11 @@ class MotionWords:
         unstated: what stands for a speed of which a move states nothing.
         speed, zone: how they are written: of ``number`` and ``unit``, ``word`` and ``numbers``.
         share: how a share of acceleration is written, of its ``number`` in %.
-        via: how an arc's auxiliary point stands in it, of its ``point``; with ``\n`` at its end
-            for one that has a line of its own, which the form ``via`` reads.
+        via: how an arc's auxiliary point stands in it, of its ``point``, and of what ``motion``
+            has; with ``\n`` at its end for one that has a line of its own, which the form ``via``
+            reads, or the grammar's `paired` motions.
         motion: a whole motion: of its ``kind`` (J, L, C), ``via``, ``point``, ``speed``, ``zone``
-            and ``share``.
+            and ``share``, and of what else the writer hands over.
     """
 
     joint: Units = field(default_factory=dict)
@@ -133,19 +134,20 @@ class MotionWords:
         size = part.size / part.kind.unit
         return (size,) if part.ratio == 1.0 else (size, size * part.ratio)
 
-    def text(self, move: Move, *points: str, kind: str = "") -> str:
+    def text(self, move: Move, *points: str, kind: str = "", **others: object) -> str:
         """A motion to its points, as they are called; ``kind``: the word of a move of this kind,
-        where that is not J, L or C."""
+        where that is not J, L or C; ``others``: what else stands in it, by name."""
         *via, point = points
         share = move.speed.acceleration_override
-        said = self.motion.format(
-            kind=kind or type(move).__name__[-1],
-            via="".join(self.via.format(point=one) for one in via),
-            point=point,
-            speed=self.speed_text(move),
-            zone=self.zone_text(move),
-            share="" if share == 1.0 else self.share.format(number=nine_decimals(100 * share)),
-        )
+        parts = {
+            "kind": kind or type(move).__name__[-1],
+            "speed": self.speed_text(move),
+            "zone": self.zone_text(move),
+            "share": "" if share == 1.0 else self.share.format(number=nine_decimals(100 * share)),
+            **others,
+        }
+        first = "".join(self.via.format(point=one, **parts) for one in via)
+        said = self.motion.format(via=first, point=point, **parts)
         return "\n".join(" ".join(line.split()) for line in said.splitlines())
 
     def speed_text(self, move: Move) -> str:

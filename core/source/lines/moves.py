@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import replace
 
 from ...errors import InputError
@@ -14,6 +16,9 @@ from ...program.tool import FLANGE, WORLD, Tool, WorkObject
 from ...program.zone import Zone
 from ...spatial.pose import Pose
 from .statements import Operand
+
+_GROUPS = ("speed", "unit", "share", "pace", "zone", "word", "size", "behind", "tool", "frame")
+"""What a motion says beside where it goes."""
 
 
 def made_move(
@@ -79,6 +84,30 @@ def counted_on(target: Target, before: Move | None, tool: Tool, work_object: Wor
     x, y, z = (a + b for a, b in zip(here.pose.position, target.pose.position, strict=True))
     turned = Pose(quaternion=target.pose.quaternion) @ Pose(quaternion=here.pose.quaternion)
     return replace(target, pose=Pose((x, y, z), turned.quaternion))
+
+
+def said_beside(found: re.Match[str]) -> dict[str, str]:
+    """What a motion says beside where it goes, by group."""
+    given = found.groupdict()
+    return {one: " ".join((given.get(one) or "").split()) for one in _GROUPS}
+
+
+def said_otherwise(via: Mapping[str, str], end: Mapping[str, str]) -> str:
+    """What to note of an arc whose auxiliary point is said on a line of its own; its zone says
+    nothing, since arcs pass such points.
+
+    Raises:
+        InputError: that point is one of another tool or frame.
+    """
+    other = [one for one in _GROUPS if via.get(one) and via[one].upper() != end[one].upper()]
+    if "tool" in other or "frame" in other:
+        raise InputError(
+            "the line of its auxiliary point names another tool or frame: an arc has one"
+        )
+    if not {"speed", "unit", "share"} & {*other}:
+        return ""
+    said = " ".join(via[one] for one in ("speed", "unit", "share") if via[one])
+    return f"the line of its auxiliary point says {said}: all of the arc is driven as its end says"
 
 
 class ArcPoints:

@@ -33,7 +33,7 @@ Initial = Mapping[tuple[str, int | None], Numbers | Value]
 
 _WORDS = frozenset(
     {"registers", "vectors", "initial", "outputs", "argument"}
-    | {"joints", "chained", "current", "override"}
+    | {"joints", "chained", "paired", "current", "override"}
 )
 """What of a grammar names data, or kinds of points and motions."""
 
@@ -109,6 +109,13 @@ class Grammar:
         """
         raise NotImplementedError
 
+    def ended(self) -> None:
+        """The text ends here.
+
+        Raises:
+            InputError: something in it has only begun.
+        """
+
 
 @dataclass(frozen=True)
 class LineProgram:
@@ -117,7 +124,7 @@ class LineProgram:
     Args:
         file: the name of the first.
         texts: of the files, by name.
-        routines: by lower-case name; the lines before the first named one are called "", and need
+        routines: by `routine_key`; the lines before the first named one are called "", and need
             not be there.
         points: points by file and `point_key`.
         data: what registers hold at first.
@@ -141,7 +148,7 @@ class LineProgram:
     def with_file(self, other: LineProgram) -> LineProgram:
         """The same with the routines of another file; of two of one name the first counts. Lines
         of that file that stand in no routine are one that is called as the file is."""
-        unnamed = {PurePath(other.file).stem.lower(): other.routines[""]}
+        unnamed = {routine_key(PurePath(other.file).stem): other.routines[""]}
         return replace(
             self,
             texts={**other.texts, **self.texts},
@@ -218,15 +225,16 @@ def read_lines(
     own, labels, names = routines[""], set[str](), {"": ""}
     for line, statement in _statements(source, grammar, name, lines):
         if isinstance(statement, Routine):
-            if statement.name.lower() in routines:
+            key = routine_key(statement.name)
+            if key in routines:
                 raise SourceError(f"there are two routines {statement.name}", line.span)
-            names[statement.name.lower()] = statement.name
-            own, labels = routines.setdefault(statement.name.lower(), []), set()
+            names[key] = statement.name
+            own, labels = routines.setdefault(key, []), set()
         elif isinstance(statement, NumberedPoint):
-            key = file, *point_key(statement.datum)
-            if key in points:
+            point = file, *point_key(statement.datum)
+            if point in points:
                 raise SourceError(f"there are two points {line.text.split()[0]}", line.span)
-            points[key] = statement
+            points[point] = statement
         else:
             if isinstance(statement, Label) and statement.name in labels:
                 raise SourceError(f"there are two labels {statement.name}", line.span)
@@ -235,6 +243,12 @@ def read_lines(
     bodies = {key: Body(tuple(nested(said)), names[key]) for key, said in routines.items()}
     named = tuple(key for key in bodies if key)
     return LineProgram(file, {file: text}, bodies, points, own=named)
+
+
+def routine_key(name: str) -> str:
+    """Under which a routine, or the file of one, is found: in lower case, a number without zeros
+    before it (``CALL 12`` is of ``0012.JOB``)."""
+    return (name.lstrip("0") or "0") if name.isdecimal() else name.lower()
 
 
 def point_key(datum: Datum) -> tuple[str, int | None]:
@@ -257,9 +271,12 @@ def _statements(
     name: str,
     lines: Callable[[SourceText], Iterable[Line]],
 ) -> Iterator[tuple[Line, Statement]]:
-    for line in lines(source):
+    every = list(lines(source))
+    for number, line in enumerate(every, 1):
         try:
             said = several(grammar.statement(line))
+            if number == len(every):
+                grammar.ended()
         except InputError as error:
             text = " ".join(source.text[line.start : line.end].split())
             raise SourceError(f"{text!r} is no {name} statement: {error}", line.span) from None
