@@ -17,6 +17,7 @@ from .checks.emulation import EmulationChecks
 from .checks.golden import GoldenChecks
 from .checks.hostility import HostilityChecks
 from .checks.language import LanguageChecks
+from .checks.lines import LineChecks
 from .checks.motion_model import MotionModelChecks
 from .checks.patching import PatchingChecks
 from .checks.planted import PlantedFaults
@@ -30,6 +31,7 @@ class VendorConformance(
     CatalogueChecks,
     MotionModelChecks,
     GoldenChecks,
+    LineChecks,
     WordsChecks,
     LanguageChecks,
     HostilityChecks,

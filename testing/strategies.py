@@ -151,14 +151,14 @@ def loads() -> st.SearchStrategy[Load]:
 
 def tools() -> st.SearchStrategy[Tool]:
     """The flange, and tools with names, weighed or not."""
-    names = st.sampled_from(["gun", "torch", "gripper_2"])
+    names = st.sampled_from(["gun", "torch", "gripper_2", "tool_12"])
     load = st.none() | loads().map(lambda found: replace(found, name=None))
     return st.just(FLANGE) | st.builds(Tool, name=names, tcp=poses(), load=load)
 
 
 def work_objects() -> st.SearchStrategy[WorkObject]:
     """The world, and frames with names that stand still."""
-    names = st.sampled_from(["table", "fixture"])
+    names = st.sampled_from(["table", "fixture", "fixture_11"])
     return st.just(WORLD) | st.builds(WorkObject, name=names, user=poses(1.0), frame=poses())
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from copy import copy
 from dataclasses import replace
 from itertools import zip_longest
 from typing import Any
@@ -13,7 +12,6 @@ import pytest
 
 from ...core.arrays import FloatArray
 from ...core.errors import FaultCause, FlybyError, PluginFault
-from ...core.language import Reader
 from ...core.motion.emulator.controller import Controller
 from ...core.program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement
 from ...core.program.origin import Ownership
@@ -21,12 +19,8 @@ from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE
-from ...core.program.zone import kind_word, zone_word
+from ...core.program.zone import VendorZone, ZoneKind, kind_word, zone_word
 from ...core.robot.model import Robot
-from ...core.source.lines.driving import MotionGrammar
-from ...core.source.lines.forms import FormGrammar
-from ...core.source.lines.language import LineLanguage
-from ...core.source.lines.settings import Setting
 from ...core.source.write.options import OpaqueStyle
 from ...core.spatial.pose import IDENTITY, Pose
 from ..golden import LANGUAGE, GoldenText, differences, terms_of
@@ -190,42 +184,6 @@ class GoldenChecks(Subject):
             look="the golden file: add a text that says it",
         )
 
-    def test_every_form_of_line_counts_in_a_golden_text(self) -> None:
-        """Each form of a language of lines, each setting, and what holds where nothing is said,
-        otherwise: a golden text is read otherwise than its author says then, or what is to be
-        refused is not."""
-        language = self.vendor.reader
-        if self.golden is None or not isinstance(language, LineLanguage):
-            pytest.skip(f"{self.name} has no golden texts, or no forms of lines")
-        every = (*self.golden_texts, *self.golden_refused)
-        texts = [text for text in every if self._means(language, text)]
-        unseen = []
-        for name, grammar in _without_each(language.grammar):
-            other = copy(language)
-            other.grammar = grammar
-            if all(self._means(other, text) for text in texts):
-                unseen.append(name)
-        assert not unseen, told(
-            f"{self.name}: no golden text is read otherwise without {', '.join(unseen)}",
-            look="the golden file: add lines of these forms, and what they mean; a move at which "
-            "nothing is said, and its speed and zone; of `driving` a text in [[refused]]",
-        )
-
-    def _means(self, language: Reader, text: GoldenText) -> bool:
-        """Whether a language reads a golden text, or refuses it, as its author says."""
-        suite = copy(self)
-        suite.__dict__["vendor"] = replace(self.vendor, reader=language)
-        try:
-            statements = suite.read_files(text).statements
-        except FlybyError as error:
-            return bool(text.says) and text.says.lower() in str(error).lower()
-        if text.says or len(statements) != len(text.statements):
-            return False
-        return not any(
-            differences(stated, statement, self.signals)
-            for stated, statement in zip(text.statements, statements, strict=True)
-        )
-
     def test_golden_texts_are_written_and_read_again(self) -> None:
         self.need("reader", "writer")
         for text in self._driven_texts():
@@ -283,7 +241,9 @@ class GoldenChecks(Subject):
         if spoken is None:
             return
         for words in (spoken.joint, spoken.line, spoken.arc):
-            yield from (f"zone {kind_word(kind)}" for kind in words.zones)
+            for kind in words.zones:
+                sizes = kind.sizes if isinstance(kind, ZoneKind) else ()
+                yield from (f"zone {name}" for name in _said_of(kind_word(kind), sizes))
             yield from (f"speed {name}" for name in words.speeds)
         if self.vendor.recorder is not None:
             yield "recording"
@@ -298,56 +258,12 @@ class GoldenChecks(Subject):
             yield from ("signal set" for term in terms if term == "sets")
             yield from ("signal waited for" for term in terms if term == "waits")
             if isinstance(statement, Move):
-                yield f"zone {zone_word(statement.zone)}"
+                zone, word = statement.zone, zone_word(statement.zone)
+                size = zone.size if isinstance(zone, VendorZone) and zone.kind.sizes else None
+                sizes = () if size is None else (size,)
+                yield from (f"zone {name}" for name in _said_of(word, sizes))
                 yield from (f"speed {name}" for name in stated_speeds(statement))
                 yield from ("event" for _ in statement.events)
-
-
-def _without_each(
-    grammar: type[MotionGrammar],
-) -> Iterator[tuple[str, type[MotionGrammar]]]:
-    """The grammar, each of whose forms and settings in turn the lines do not say, or of which
-    something else holds where nothing is said."""
-
-    def other(**parts: object) -> type[MotionGrammar]:
-        return type("Grammar", (grammar,), parts)
-
-    def silent(name: str) -> str:
-        return f"nothing.{name}"
-
-    for name in grammar.forms:
-        if name.partition(".")[0] not in ("nothing", "routine"):
-            forms = {silent(k) if k == name else k: v for k, v in grammar.forms.items()}
-            yield f"the form {name}", other(forms=forms)
-    if grammar.driving.pattern != FormGrammar.driving.pattern:
-        yield "`driving`", other(driving=FormGrammar.driving)
-    for one in grammar.settings:
-        rest = tuple(setting for setting in grammar.settings if setting is not one)
-        held = replace(grammar.settings, settings=rest)
-        forms = {silent(one.word): one.pattern.pattern.replace("(?P<", "(?P<_"), **grammar.forms}
-        yield f"the setting {one.word}", other(forms=forms, settings=held)
-        for name, changed in _said_otherwise(one):
-            every = (changed if setting is one else setting for setting in grammar.settings)
-            held = replace(grammar.settings, settings=tuple(every))
-            yield f"{name} of the setting {one.word}", other(settings=held)
-
-
-def _said_otherwise(setting: Setting) -> Iterator[tuple[str, Setting]]:
-    """A setting of which something else holds where a program, or a line, says nothing."""
-
-    def moved(numbers: Sequence[float]) -> tuple[float, ...]:
-        return tuple(number / 2 if number else 1.0 for number in numbers)
-
-    first = setting.initial
-    if first is not None:
-        several = moved(first if isinstance(first, Sequence) else [first])
-        yield "`initial`", replace(setting, initial=several)
-    if setting.omitted:
-        yield "`omitted`", replace(setting, omitted=moved(setting.omitted))
-    if setting.always is not None:
-        yield "`always`", replace(setting, always=None)
-    for word, numbers in setting.words.items():
-        yield f"the word {word!r}", replace(setting, words={**setting.words, word: moved(numbers)})
 
 
 def stated_speeds(move: Move) -> list[str]:
@@ -375,6 +291,11 @@ def _seen(text: GoldenText, program: Program) -> Iterator[str]:
             yield _OWNED.get(statement.origin.target.ownership, "datum of its own")
     if any(row.get("not_driven") for row in text.statements):
         yield "code that is not driven"
+
+
+def _said_of(word: str, sizes: Sequence[float]) -> list[str]:
+    """A kind of zone; of one whose sizes have names, each of them."""
+    return [f"{word} of {1000 * size:g} mm" for size in sizes] or [word]
 
 
 def _joints_at(robot: Robot, pose: Mapping[str, Any]) -> FloatArray:

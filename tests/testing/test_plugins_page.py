@@ -105,7 +105,7 @@ def test_a_language_without_arcs_passes_the_suite(page: ModuleType, tmp_path: Pa
     golden = next(text for text in blocks("toml") if "[[texts]]" in text)
     golden, _, arc = golden.rpartition("\n[[texts.statements]]")
     assert "MoveC" in arc
-    golden = golden.replace("MOVEC P[3] P[4] 100 STOP\n", "").replace(
+    golden = golden.replace("MOVEC P[12] P[14] 100 STOP\n", "").replace(
         "none = [", 'none = ["MoveC", '
     )
     (tmp_path / "golden.toml").write_text(golden, "utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from copy import copy
@@ -12,8 +13,11 @@ from typing import Any
 import pytest
 
 from flyby.core.motion.emulator.controller import Controller
+from flyby.core.program.zone import ZoneKind
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.lines.amounts import Amount
+from flyby.core.source.lines.driving import dialect_of
+from flyby.core.source.lines.expressions import Spelling
 from flyby.core.translation.corners import corners_of
 from flyby.core.translation.hand_out import check_driven
 from flyby.core.translation.translate import translate
@@ -80,6 +84,84 @@ def test_a_form_that_no_golden_text_has_is_named(suite: Any) -> None:
     shorter.golden.write_text(said.replace(row, ""), "utf-8")
     with pytest.raises(AssertionError, match="is read otherwise without the form wait\n"):
         shorter.test_every_form_of_line_counts_in_a_golden_text()
+
+
+def speaking(suite: Any, changes: dict[str, str], **parts: Any) -> VendorConformance:
+    """The suite of the plugin with another golden file, and with another grammar."""
+    found: VendorConformance = suite("none", "none")
+    assert isinstance(found.golden, Path)
+    text = found.golden.read_text("utf-8")
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    found.golden.write_text(text, "utf-8")
+    language = copy(found.vendor.reader)
+    language.grammar = type("Other", (language.grammar,), parts)  # type: ignore[union-attr]
+    found.__dict__["vendor"] = replace(found.vendor, reader=language)
+    return found
+
+
+TURN = """
+[[refused]]
+about = "a turn"
+says = "may move the robot"
+files."main.omega" = "TURN P[1]"
+"""
+
+
+def test_each_word_of_driving_is_in_a_text_that_is_refused(suite: Any) -> None:
+    driving, last = re.compile("MOVE|TURN"), "# What must not be"
+    with pytest.raises(AssertionError, match="otherwise without 'TURN' of `driving`\n"):
+        speaking(suite, {}, driving=driving).test_every_form_of_line_counts_in_a_golden_text()
+    more = speaking(suite, {last: f"{TURN}{last}"}, driving=driving)
+    more.test_every_form_of_line_counts_in_a_golden_text()
+
+
+def test_each_sign_decides_something(suite: Any) -> None:
+    spelling = Spelling(signs={"!=": "<>", "==": "="})
+    both = "otherwise without the sign '!=', the sign '=='\n"
+    for changes, unseen in (
+        ({}, both),
+        ({"R[1] < 1": "R[1] != 1 AND R[1] == 0"}, None),
+        ({"R[1] < 1": "R[1] != 1 OR R[1] == 0"}, both),
+    ):
+        made = speaking(suite, changes, spelling=spelling)
+        made.test_golden_texts_mean_what_their_author_says()
+        if unseen is None:
+            made.test_every_form_of_line_counts_in_a_golden_text()
+            continue
+        with pytest.raises(AssertionError, match=unseen):
+            made.test_every_form_of_line_counts_in_a_golden_text()
+
+
+def test_numbers_of_two_digits_are_asked_for(suite: Any) -> None:
+    check = "test_golden_texts_have_numbers_of_two_digits"
+    getattr(suite("none", "none"), check)()
+    short = speaking(suite, {"P[12]": "P[3]", "P[14]": "P[4]"})
+    short.test_golden_texts_mean_what_their_author_says()
+    with pytest.raises(AssertionError, match="for point of the form motion, via of the form"):
+        getattr(short, check)()
+
+
+def test_what_a_line_says_and_nobody_looks_at_is_named(suite: Any) -> None:
+    check = "test_each_part_of_a_golden_line_is_asked_for"
+    forms = dict(suite("none", "none").vendor.reader.grammar.forms)
+    forms["motion"] += r"(?:\s+T=(?P<gun>\d+))?"
+    silent = speaking(suite, {"50 PASS 30": "50 PASS 30 T=12"}, forms=forms)
+    with pytest.raises(AssertionError, match=r"\s+gun \(12\) of MOVEJ P\[1\] 50 PASS 30 T=12\n"):
+        getattr(silent, check)()
+    getattr(suite("none", "none"), check)()
+
+
+def test_each_size_that_has_a_name_is_asked_for(suite: Any) -> None:
+    levels = ZoneKind("PASS", None, 0.05, sizes=(0.01, 0.02, 0.05))
+    reader = suite("none", "none").vendor.reader
+    words = replace(reader.grammar.words, zones={"PASS": levels})
+    made = speaking(suite, {"PASS 30": "PASS 1", "PASS 40": "PASS 3"}, words=words)
+    spoken = dialect_of(made.vendor.reader.grammar, "; ", tools=False, work_objects=False)  # type: ignore[union-attr]
+    made.__dict__["vendor"] = replace(made.vendor, speaks=spoken)
+    with pytest.raises(AssertionError, match="no golden text has: zone PASS of 20 mm\n"):
+        made.test_golden_texts_cover_the_language()
 
 
 @pytest.mark.parametrize("word", ["MoveC", "joint target"])

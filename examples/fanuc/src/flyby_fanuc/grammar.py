@@ -58,7 +58,7 @@ class Grammar(MotionGrammar):
         "counted": r"FOR\s+(?P<counter>R\[[^\]]*\])\s*=\s*(?P<first>.+?)\s+(?:TO|(?P<down>DOWNTO))"
         r"\s+(?P<last>.+)",
         "wait": r"WAIT\s+(?P<time>[^(]+?)\s*\(sec\)",
-        "wait.register": r"WAIT\s+(?P<time>[\d.]+|R\[[^\]=<>]*\])",
+        "wait.register": r"WAIT\s+(?P<time>[\d.]+|A?R\[[^\]=<>]*\])",
         "wait.for": r"WAIT\s+(?P<condition>.+?)(?:\s*TIMEOUT\s*,.*)?",
         "assigned.held": r"(?P<target>UFRAME_NUM|UTOOL_NUM|OVERRIDE)(?:\[[^\]]*\])?\s*=\s*"
         r"(?P<value>[^%]+?)\s*%?",

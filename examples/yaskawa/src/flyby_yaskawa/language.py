@@ -80,8 +80,9 @@ class Grammar(MotionGrammar):
 
     def head(self, line: Line, found: Found) -> Said:
         """What describes the job, or the positions that follow."""
-        self._type = found["value"].strip() if found["word"] == "POSTYPE" else self._type
-        self._tool = int(found["value"]) if found["word"] == "TOOL" else self._tool
+        value = found["value"].strip()
+        self._type = value if found["word"] == "POSTYPE" else self._type
+        self._tool = int(value) if found["word"] == "TOOL" else self._tool
         return None
 
     def changed(self, line: Line, found: Found) -> Said:
