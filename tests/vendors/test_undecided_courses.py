@@ -96,6 +96,10 @@ IS_TAKEN = (
 NOT_FULFILLED = (
     "the condition depends on <IN>: no branch that moves the robot: taken as not fulfilled"
 )
+NOT_LED_ELSEWHERE = (
+    "the condition depends on <IN>: branch 1 of 1 leads elsewhere: taken as not fulfilled, and "
+    "other moves may be driven if it is"
+)
 ONCE = "the end of the loop depends on <IN>: its body runs once"
 AT_ONCE = "the end of the loop depends on <IN>: it does not move the robot and is left at once"
 WAY_OUT = f"{ONCE}, and then this way out is taken"
@@ -171,7 +175,7 @@ CASES = {
         "IF <IN> THEN\n<A>\nRETURN\nENDIF\n<C>",
         "if <IN>:\n<A>\nhalt\nend\n<C>",
         "C",
-        NOT_FULFILLED,
+        NOT_LED_ELSEWHERE,
     ),
     "ELSE that ends the program": Case(
         "IF <IN> THEN\nn:=1;\nELSE\nRETURN;\nENDIF\n<C>",
@@ -394,7 +398,7 @@ CASES = {
         "FOR N=1 TO 3\n<A>\nIF <IN> THEN\nEXIT\nENDIF\nENDFOR\n<B>",
         "while n < 3:\n<A>\nif <IN>:\nbreak\nend\nn = n + 1\nend\n<B>",
         "A A A B",
-        NOT_FULFILLED + " (3 times)",
+        NOT_LED_ELSEWHERE + " (3 times)",
     ),
     "a body that runs before it is asked": Case(
         "again:\n<A>\nIF NOT (<IN>) GOTO again;\n<B>",

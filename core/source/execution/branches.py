@@ -150,7 +150,13 @@ class Branches(Generic[Block]):
                     "is taken"
                 )
         if may[-1] and (otherwise is None or self._leads_to(otherwise) is None):
-            return 0, "no branch that moves the robot: taken as not fulfilled"
+            away = next((number for number, leads, _ in ways if leads is not None), None)
+            if away is None:
+                return 0, "no branch that moves the robot: taken as not fulfilled"
+            return 0, (
+                f"branch {away} of {count} leads elsewhere: taken as not fulfilled, and other "
+                "moves may be driven if it is"
+            )
         for number, leads, _ in ways:
             if leads is None:
                 return number, f"branch {number} of {count}, the first that comes back, is taken"

@@ -247,10 +247,14 @@ ONCE = "the end of the loop depends on a signal: its body runs once"
 
 BRANCHES: dict[str, tuple[list[Statement], str, str]] = {
     "moves": ([If(SIGNAL, block(A)), B], "A B", "branch 1 of 1, the first that moves"),
-    "does not move": ([If(SIGNAL, block(FLAG)), B], "B", "taken as not fulfilled"),
+    "does not move": ([If(SIGNAL, block(FLAG)), B], "B", "moves the robot: taken as not fulfilled"),
     "only ELSE moves": ([If(SIGNAL, block(FLAG), block(A)), B], "A B", "branch 2 of 2, the first"),
     "neither moves": ([If(SIGNAL, block(FLAG), block(FLAG)), B], "B", "taken as not fulfilled"),
-    "moves and returns": ([If(SIGNAL, block(A, RETURN)), B], "B", "taken as not fulfilled"),
+    "moves and returns": (
+        [If(SIGNAL, block(A, RETURN)), B],
+        "B",
+        "branch 1 of 1 leads elsewhere: taken as not fulfilled, and other moves may be driven if",
+    ),
     "ELSE ends": ([If(SIGNAL, block(FLAG), block(END)), B], "B", "the first that comes back"),
     "all end": ([If(SIGNAL, block(A, END), block(B, RETURN)), C], "B", "all lead elsewhere"),
     "ends inside": (
