@@ -71,7 +71,7 @@ def test_a_backup_that_says_nothing_of_its_robot_is_driven_by_one(tmp_path: Path
     assert robot == "abb/irb4600-60-205" and "stands in its text or folder" in said
     program = read_or_guess(tmp_path, SourceOptions())
     assert len(program.moves) == 2 and program.setup.robot.name == robot
-    with pytest.raises(OptionError, match="which robot is .* for.*abb/irb4600-60-205"):
+    with pytest.raises(OptionError, match=r"which robot is .* for.*abb/irb4600-60-205"):
         with_robot(tmp_path, SourceOptions(), writes=True)
     syspar = tmp_path / "SYSPAR"
     syspar.mkdir()

@@ -108,6 +108,16 @@ class Statements:
         return Step()
 
 
+def jumps_nowhere(body: Body, around: frozenset[str] = NOTHING) -> Iterator[Jump]:
+    """The jumps in a block that have no label there, nor in the blocks around it."""
+    known = around.union(body.labels)
+    for statement in body.statements:
+        if isinstance(statement, Jump) and statement.label not in known:
+            yield statement
+        for block in statement.blocks if isinstance(statement, If) else ():
+            yield from jumps_nowhere(block, known)
+
+
 def expressions_of(statement: Statement) -> list[Expression]:
     """The expressions that decide what registers, outputs and jumps become."""
     if isinstance(statement, Assign):

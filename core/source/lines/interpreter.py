@@ -29,7 +29,7 @@ from ..execution.scopes import unknown_name
 from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
 from ..reading import ReadOptions
-from .analysis import Statements, expressions_of
+from .analysis import Statements, expressions_of, jumps_nowhere
 from .data import Data
 from .expressions import Datum, Expression, Number
 from .program import Grammar, LineProgram, routine_key
@@ -168,6 +168,10 @@ class _Interpreter:
 
     def run(self, body: Body, name: str) -> Program:
         """Carry a routine out to its end."""
+        for one in self._program.routines.values():
+            for jump in jumps_nowhere(one):
+                message = f"there is no label {jump.label} in this routine: a controller stops here"
+                self._out.notes.once(f"jump {jump.span}", message, jump.span)
         with suppress(_Finished):
             self._routine(body, "", Span(self._program.file, 1, 1, 0, 0))
         return Program(

@@ -136,6 +136,14 @@ def test_a_step_is_where_jumps_lead() -> None:
     assert move.target.name is None and move.target.pose.position[1] == pytest.approx(0.1)
 
 
+def test_a_jump_to_no_label_is_noted_where_it_is_not_carried_out() -> None:
+    text = "V1=1\nIF V1=2 GOTO S99\nIF V1=2 GOTO S12\nS12 MOVE L,P3,S=9mm/s,T=0\n"
+    (note,) = read(text).notes
+    assert "there is no label S99" in note.message and note.span.line == 9
+    with pytest.raises(SourceError, match="there is no label S99"):
+        read(text.replace("V1=1", "V1=2"))
+
+
 def test_it_is_written_with_what_the_language_hands_over() -> None:
     program = read(ARC % ("200mm/s", "1"))
     (text,) = Language().write(program, ROBOT, {}).values()
