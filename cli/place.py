@@ -44,6 +44,8 @@ def place(
             f"{program}: of {found.looked} bases {found.reached} have all targets in reach, "
             f"{found.emulated} were driven from"
         )
+        if made.order:
+            print_rich(f"tasks: {', '.join(made.order)}")
         print_rich(made.line or "no base is proven to keep the clearance")
     if not made.proven:
         raise typer.Exit(1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -21,9 +21,12 @@ from .opening import is_station_file, open_station
 from .station import JITTER
 
 if TYPE_CHECKING:
+    from ...core.cell.cell import Cell
     from ...core.program.program import Program
+    from ...core.robot.model import Robot
     from ...core.spatial.pose import Pose
-    from ...problems.placement.place import BesideOthers
+    from ...core.vendor import Vendor
+    from ...problems.placement.place import BesideOthers, Placement, PlacementTask
     from .placed import PlacedRobot
 
 _ROOM = "500,500,0,45"
@@ -46,6 +49,12 @@ class PlaceOptions(CellOptions):
     )
     of: str | None = value(
         None, "Of a station file: the robot whose base is looked for, beside the others."
+    )
+    order: Sequence[str] = value(
+        (),
+        "Routine whose calls may change places with those of others named so; may be given several "
+        "times.",
+        several=True,
     )
 
 
@@ -101,6 +110,11 @@ def station_place_with(source: str | Path, options: PlaceOptions) -> PlacedRobot
         raise OptionError(f"{spelt('of')} names the robot to place: {', '.join(members)}")
     if options.of not in members:
         raise UnknownNameError("robot of the station", options.of, members)
+    if options.order:
+        raise OptionError(
+            f"{spelt('order')} is found for one program by itself: beside other robots tasks stand "
+            "where signals have them"
+        )
     feasibility = feasibility_of(opened, JITTER, options.say)
     beside = partial(feasibility.placed, options.of)
     made = _placed(members[options.of].program, replace(options, of=None), beside)
@@ -124,14 +138,23 @@ def _placed(program: Program, options: PlaceOptions, beside: BesideOthers | None
         start=start_of(program),
     )
     course = CellCourse.of(program, setup)
-    found = place(
-        lambda robot: Controller(vendor, robot), course.program, cell, task, options.say, beside
-    )
+
+    def based(driven: Program, around: Cell, wanted: PlacementTask) -> Placement:
+        def controller(robot: Robot) -> Controller:
+            return Controller(vendor, robot)
+
+        return place(controller, driven, around, wanted, options.say, beside)
+
+    order: tuple[str, ...] = ()
+    if options.order:
+        found, driven, order = _ordered(course.program, options.order, cell, task, vendor, based)
+    else:
+        found, driven = based(course.program, cell, task), course.program
 
     def refused_from(base: Pose) -> MotionError | None:
         """Why the program cannot be driven from a base as its configurations say."""
         try:
-            Controller(setup.vendor, cell.robot.with_base(base)).run(course.program, task.start)
+            Controller(setup.vendor, cell.robot.with_base(base)).run(driven, task.start)
         except MotionError as error:
             return error
         return None
@@ -154,7 +177,52 @@ def _placed(program: Program, options: PlaceOptions, beside: BesideOthers | None
                     f"cannot be driven from there ({refused}): state them anew for that base"
                 )
             )
-    return PlacedRobot(program, cell, task.clearance, found, tuple(notes))
+    return PlacedRobot(program, cell, task.clearance, found, tuple(notes), order)
+
+
+def _ordered(
+    program: Program,
+    names: Sequence[str],
+    cell: Cell,
+    task: PlacementTask,
+    vendor: Vendor,
+    based: Callable[[Program, Cell, PlacementTask], Placement],
+) -> tuple[Placement, Program, tuple[str, ...]]:
+    """A base with an order of tasks: the quickest where the robot stands, the base for it, and the
+    quickest from there, as long as that is proven, too.
+
+    Returns:
+        What was found, the program in that order, and its tasks.
+    """
+    from ...core.motion.emulator.controller import Controller
+    from ...problems.placement.task_orders import TaskOrders, quickest_order
+
+    orders = TaskOrders.of(program, names)
+
+    def at(robot: Robot) -> Callable[[Program], float]:
+        def seconds(made: Program) -> float:
+            try:
+                return Controller(vendor, robot).run(made, task.start).duration
+            except MotionError:
+                return math.inf
+
+        return seconds
+
+    here = replace(task, room=(0.0, 0.0, 0.0, 0.0))
+    before = based(program, cell, here).before
+    order = quickest_order(orders, at(cell.robot))
+    found = based(orders.program_in(order), cell, task)
+    best = found.best
+    if best is not None:
+        there = cell.robot.with_base(best.base)
+        again = quickest_order(orders, at(there), order)
+        if again != order:
+            around = replace(cell, robot=there)
+            other = based(orders.program_in(again), around, here).best
+            if other is not None:
+                order, found = again, replace(found, best=replace(other, shift=best.shift))
+    made = replace(found, before=before)
+    return made, orders.program_in(order), tuple(orders.named(order))
 
 
 def _room(given: str | Sequence[float]) -> tuple[float, float, float, float]:

@@ -37,6 +37,7 @@ class PlacedRobot:
         clearance: m that was to be kept.
         found: what the search found.
         notes: what a user should know.
+        order: in which tasks are carried out, where that was looked for, each with its line.
     """
 
     program: Program
@@ -44,6 +45,7 @@ class PlacedRobot:
     clearance: float
     found: Placement
     notes: tuple[Note, ...] = ()
+    order: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         if self.found.best is None:
@@ -88,6 +90,7 @@ class PlacedRobot:
             "clearance_mm": 1e3 * self.clearance,
             "before": None if found.before is None else _json(found.before),
             "best": None if found.best is None else _json(found.best),
+            "order": list(self.order),
             "bases_looked_at": found.looked,
             "bases_in_reach": found.reached,
             "bases_emulated": found.emulated,
