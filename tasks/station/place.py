@@ -151,10 +151,10 @@ def _placed(program: Program, options: PlaceOptions, beside: BesideOthers | None
     else:
         found, driven = based(course.program, cell, task), course.program
 
-    def refused_from(base: Pose) -> MotionError | None:
-        """Why the program cannot be driven from a base as its configurations say."""
+    def refused_from(base: Pose, made: Program) -> MotionError | None:
+        """Why a program cannot be driven from a base as its configurations say."""
         try:
-            Controller(setup.vendor, cell.robot.with_base(base)).run(driven, task.start)
+            Controller(setup.vendor, cell.robot.with_base(base)).run(made, task.start)
         except MotionError as error:
             return error
         return None
@@ -167,8 +167,11 @@ def _placed(program: Program, options: PlaceOptions, beside: BesideOthers | None
                 "to be stated anew"
             )
         )
-    for which, placed in (("as it is", found.before), ("the best", found.best)):
-        refused = None if placed is None else refused_from(placed.base)
+    for which, placed, made in (
+        ("as it is", found.before, course.program),
+        ("the best", found.best, driven),
+    ):
+        refused = None if placed is None else refused_from(placed.base, made)
         if refused is not None:
             notes.append(
                 Note(
