@@ -163,7 +163,8 @@ class SignalWords:
         example: what a signal of such an action is called, with ``?`` for what the user fills in.
         event: the statement that the text of an event on the way is short for.
         stops: whether the robot stops where an output is set.
-        meets: what a statement waits for of other robots' programs; None for nothing.
+        meets: what a statement waits for of other robots' programs; None for nothing. An
+            `InputError` says that it couples robots in a way that is not followed.
         zones: world zones that the files of a program have the controller watch for a robot, and
             what is said of those that cannot be followed; None where a language has none.
         together: the id of a move, by its statement, that other robots make with it; None where a

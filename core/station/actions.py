@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import IntArray
 from ..dialect import SignalWords
-from ..errors import Span
+from ..errors import InputError, Span
 from ..motion.emulator.run import Run
 from ..motion.geometry.pieces import WAYPOINT
 from ..program.event import Event, EventAnchor
@@ -76,6 +76,9 @@ def meetings_of(program: Program, words: SignalWords | None) -> tuple[MeetingPoi
     Args:
         program: driven or not.
         words: how its language says so; None if nobody knows, and nothing is found.
+
+    Raises:
+        InputError: one couples robots in a way that is not followed.
     """
     found: list[MeetingPoint] = []
     move = -1
@@ -84,7 +87,11 @@ def meetings_of(program: Program, words: SignalWords | None) -> tuple[MeetingPoi
             move += 1
         elif isinstance(statement, Opaque):
             assert words is not None
-            does = words.meets(statement.text)
+            try:
+                does = words.meets(statement.text)
+            except InputError as error:
+                where = "" if statement.span is None else f"{statement.span}: "
+                raise InputError(f"{where}{error}") from None
             if does is not None:
                 found.append(MeetingPoint(does, move, _in_a_line(statement.text), statement.span))
     return tuple(found)

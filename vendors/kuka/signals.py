@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from ...core.dialect import SignalWords
+from ...core.errors import InputError
 from ...core.program.signal import Level, Meet, SetSignal, SignalAction, WaitSignal
 from ...core.source.text.conditions import ConditionWords, NoConditionError
 
@@ -53,6 +54,7 @@ def read(text: str) -> SignalAction | None:
     return None
 
 
+_COUPLED = re.compile(r"\s*SYNCCMD\s*\(\s*#(?P<kind>\w+)", re.IGNORECASE)
 _MEETING = re.compile(
     r"\s*SYNCCMD\s*\(\s*#(?P<kind>ProgSync|MotionSync)\s*,\s*\"(?P<label>[^\"]+)\"\s*,"
     r"\s*(?P<mask>\d+|'B[01]+'|'H[0-9A-F]+')\s*\)\s*",
@@ -61,10 +63,21 @@ _MEETING = re.compile(
 
 
 def meets(text: str) -> Meet | None:
-    """The meeting of RoboTeam that a statement is; bit i of its mask is the (i + 1)-th robot."""
+    """The meeting of RoboTeam that a statement is; bit i of its mask is the (i + 1)-th robot.
+
+    Raises:
+        InputError: robots are coupled in another way than by common starts and durations.
+    """
     found = _MEETING.fullmatch(text)
     if found is None:
-        return None
+        coupled = _COUPLED.match(text)
+        if coupled is None:
+            return None
+        raise InputError(
+            f"SYNCCMD(#{coupled['kind']}, …): robots meet by #ProgSync and #MotionSync with label "
+            "and mask; other couplings, such as a base that follows another robot, are not "
+            "followed: leave these motions out of the programs of the station"
+        )
     mask = found["mask"].strip("'").upper()
     bases = {"B": 2, "H": 16}
     bits = int(mask[1:], bases[mask[0]]) if mask[0] in bases else int(mask)

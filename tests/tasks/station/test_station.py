@@ -634,3 +634,31 @@ def test_several_backups_are_opened_at_once(tmp_path: Path) -> None:
         station([tmp_path / "left.src", tmp_path / "right.src"])
     with pytest.raises(InputError, match="stands for itself"):
         station([tmp_path / "left.toml", tmp_path / "right.src"])
+
+
+@pytest.mark.parametrize(
+    ("statement", "words"),
+    [
+        ('SYNCCMD(#GeoLink, "A", 3)', r"robot\.right: .*right\.src:3.*#GeoLink.*not followed"),
+        ("$BASE=BASE_DATA[2]", r"robot\.right: .*right\.src:4.*BASE_DATA\[2\] is not known"),
+    ],
+)
+def test_nothing_is_proven_of_frames_that_nobody_knows(
+    tmp_path: Path, statement: str, words: str
+) -> None:
+    axes = "A2 -90,A3 90,A4 0,A5 45,A6 0"
+    text = ""
+    for name, y, line in (("left", -4000, ""), ("right", 0, statement)):
+        (tmp_path / f"{name}.src").write_text(
+            f"DEF {name}( )\nPTP {{A1 0,{axes}}}\n{line}\n"
+            "PTP {X 1400,Y 0,Z 1500,A 0,B 135,C 0}\nEND\n"
+            if line
+            else f"DEF {name}( )\nPTP {{A1 0,{axes}}}\nPTP {{A1 9,{axes}}}\nEND\n"
+        )
+        base = f"base = {{ xyz_mm = [0, {y}, 0] }}"
+        (tmp_path / f"{name}.toml").write_text(f'robot = "kuka/kr30-3"\n{base}\n')
+        text += f'[robot.{name}]\ncell = "{name}.toml"\nprogram = "{name}.src"\n'
+    file = tmp_path / "station.toml"
+    file.write_text(text)
+    with pytest.raises(InputError, match=words):
+        station(file, no_proof=False)
