@@ -76,3 +76,10 @@ def test_they_are_written_back_with_all_that_joins_them(name: str, robot: str) -
     for file, text in files.items():
         old, new = reading.files[file].data, text.data
         assert old != new and SYNC.findall(old) == SYNC.findall(new)
+
+
+def test_what_the_station_answers_is_no_finding() -> None:
+    """Read by itself a task has no table under its targets, and drives alone."""
+    made = flyby.station_check(ROOT / "multimove" / "station.toml", no_proof=True)
+    told = [finding.message for found in made.robots.values() for finding in found]
+    assert told and not [one for one in told if "no axis of this robot" in one or "alone" in one]
