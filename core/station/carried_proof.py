@@ -63,7 +63,9 @@ def carried_work(
             span = float(sigma.min()), float(sigma.max())
             made = certify_stretch(worker.controller, worker.run, scenes, clearance, [span])
             if not made.proven:
-                move = next(iter(block)) if made.move is None else made.move
+                # Where a stretch begins and ends it touches the moves beside it.
+                near = min(block) if made.move is None else made.move
+                move = min(block, key=lambda own: abs(own - near))
                 pair = made.pair or ("arm", ", ".join(sorted(things)))
                 if pair[0].partition(" (")[0] in things:
                     pair = pair[::-1]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import flyby
@@ -58,6 +58,21 @@ def off_line(points: FloatArray, a: Sequence[float], b: Sequence[float]) -> Floa
     along = along / np.linalg.norm(along)
     off = 1e3 * points - start
     return np.linalg.norm(off - (off @ along)[:, None] * along, axis=1)
+
+
+def sampled(made: DrivenStation, t: FloatArray) -> float:
+    """m, the least distance of the first robot to what lies on the table, by the clocks of both."""
+    member, table = (made.station.members[name] for name in ("one", "table"))
+    cell = replace(
+        member.cell,
+        obstacles=[replace(o, carried_by="STN1") for o in table.cell.obstacles],
+        allowed=(*member.cell.allowed, ("torch", "disc")),
+    )
+    scene = CollisionScene(cell, member.run.program.moves[-1].tool)
+    its = np.array([body.thing in ("disc", "post") for body in scene.bodies])
+    q = np.column_stack([joints_at(made, "one", t)[:, :6], joints_at(made, "table", t)[:, 6]])
+    pairs = scene.pairs[its[scene.pairs].sum(axis=1) == 1]
+    return float(scene.of_pairs(pairs).distances(q, 1.0).distance.min())
 
 
 @settings(
@@ -111,18 +126,8 @@ def test_what_stands_on_the_table_is_met_or_proven_clear(
     (pair,) = made.clearances
     assert pair.in_time.proven == clear and made.clear == clear
     (work,) = StationProver(made.station, made.actions).prover("one", "table").carried
-    member, table = (made.station.members[name] for name in ("one", "table"))
-    cell = replace(
-        member.cell,
-        obstacles=[replace(o, carried_by="STN1") for o in table.cell.obstacles],
-        allowed=(*member.cell.allowed, ("torch", "disc")),
-    )
-    scene = CollisionScene(cell, member.run.program.moves[3].tool)
-    its = np.array([body.thing in ("disc", "post") for body in scene.bodies])
     t = block(made, "one", 2, 2) if clear else np.linspace(0.0, made.duration, 400)
-    q = np.column_stack([joints_at(made, "one", t)[:, :6], joints_at(made, "table", t)[:, 6]])
-    pairs = scene.pairs[its[scene.pairs].sum(axis=1) == 1]
-    least = float(scene.of_pairs(pairs).distances(q, 1.0).distance.min())
+    least = sampled(made, t)
     assert (least >= 0.005 - 2e-5) == clear
     assert work.least[0] == pytest.approx(least, abs=1e-3) or not clear
     if not clear:
@@ -191,3 +196,41 @@ def test_a_unit_that_several_cells_have_is_refused(tmp_path: Path) -> None:
     cell.write_text(cell.read_text() + axis)
     with pytest.raises(FlybyError, match="two and table have an axis of that name"):
         flyby.station(file)
+
+
+@settings(
+    max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    places=st.lists(
+        st.tuples(st.floats(-170.0, -80.0), st.floats(-60.0, 60.0), st.floats(2.0, 60.0)),
+        min_size=3,
+        max_size=3,
+    ),
+    turned=st.floats(10.0, 100.0),
+    zone=st.sampled_from(["fine", "z10"]),
+)
+@example(
+    places=[(-100.0, 50.0, 10.0), (-150.0, 20.0, 10.0), (-150.0, 0.0, 30.0)],
+    turned=60.0,
+    zone="fine",
+)
+def test_what_is_proven_on_the_table_no_sampling_refutes(
+    tmp_path: Path, places: list[tuple[float, float, float]], turned: float, zone: str
+) -> None:
+    """Samples of both programs by their own clocks, of the whole run; and what they keep twice the
+    clearance of is proven."""
+    a, mid, b = places
+    one = [ABOVE, MET, weld(*a, kind="J"), ON, weld(*mid, 10, zone=zone), weld(*b, 20), OFF, ABOVE]
+    table = [turn(5), turn(0), MET, ON, turn(turned / 2, 10, zone=zone), turn(turned, 20), OFF]
+    try:
+        made = flyby.station(write_station(tmp_path, {"one": one}, table, ALLOWED))
+    except FlybyError as error:
+        assert "reach" in str(error) or "limit" in str(error) or "nearer" in str(error)
+        return
+    (pair,) = made.clearances
+    least = sampled(made, np.linspace(0.0, made.duration, 1500))
+    if pair.in_time.proven:
+        assert least >= 0.005 - 2e-5
+    else:
+        assert least < 0.01
