@@ -10,6 +10,7 @@ from ..driving.driven_program import DrivenPart
 from ..driving.past_faults import drive
 from ..errors import FaultCause, FlybyError, MotionError, SourceError
 from ..motion.emulator.controller import Controller
+from ..program.assumed_places import assumed_places
 from ..program.program import Program
 from ..program.target import JointTarget
 from ..robot.model import Robot
@@ -117,7 +118,8 @@ def _driven(
     try:
         driven = drive(controller, program, start)
     except MotionError as error:
-        fix = _elsewhere() if error.move is None or error.cause is FaultCause.NOWHERE else _FIX
+        nowhere = error.move is None or error.cause is FaultCause.NOWHERE
+        fix = _elsewhere() if nowhere else _fix_of(program, error.move)
         span = error.span
         if span is None and error.move is not None:
             span = program.moves[error.move].statement
@@ -126,12 +128,22 @@ def _driven(
     except FlybyError as error:
         return (), [Finding(CANNOT_DRIVE, Severity.ERROR, str(error), _FIX)]
     return driven.parts, [
-        Finding(CANNOT_DRIVE, Severity.ERROR, fault.message, _FIX, fault.move, fault.span)
-        for fault in driven.faults
+        Finding(CANNOT_DRIVE, Severity.ERROR, f.message, _fix_of(program, f.move), f.move, f.span)
+        for f in driven.faults
     ]
 
 
 _FIX = "correct this move"
+
+
+def _fix_of(program: Program, move: int | None) -> str:
+    """What to do of a move that cannot be driven; what nobody has said of it goes first."""
+    unknown = () if move is None else assumed_places(program).get(move, ())
+    if move is None or not (unknown or program.moves[move].open):
+        return _FIX
+    what = f"what {' and '.join(unknown)} {'is' if len(unknown) == 1 else 'are'}"
+    asked = f"say {what if unknown else 'where it goes'} in a file ({spelt('answers')}"
+    return f"{asked}; `flyby ask` writes one), or {_FIX}"
 
 
 def _elsewhere() -> str:

@@ -45,6 +45,12 @@ def test_what_the_user_asks_to_stop_at_is_not_put_elsewhere() -> None:
         flyby.emulate(rapid(0, 0), strict=True)
 
 
+def test_what_does_not_drive_for_them_is_mended_by_saying_what_they_are() -> None:
+    fixes = {f.fix for f in flyby.check(rapid(0, 0)) if f.rule == "cannot-drive"}
+    (fix,) = fixes
+    assert fix.startswith("say what tGrip and wTable are in a file (answers; `flyby ask` writes")
+
+
 @pytest.mark.parametrize("placed", [False, True])
 def test_nothing_is_proven_or_written_with_them(placed: bool, tmp_path: Path) -> None:
     program = rapid(0, 0) if placed else rapid(700, 600)
