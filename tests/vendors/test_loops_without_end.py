@@ -201,4 +201,4 @@ def test_a_counter_that_steps_unevenly_foresees_nothing(language) -> None:
 @pytest.mark.parametrize("language", FOR)
 def test_a_for_that_counts_too_far_is_cut_short(language) -> None:
     move, cut = program(language, FOR[language].format(MOVE[language])).moves
-    assert not move.open and re.search("FOR k has 998?9?[0-9]+ passes left", str(cut.open))
+    assert not move.open and "FOR k has 99899 passes left" in str(cut.open)

@@ -158,7 +158,8 @@ def run_for(run: Carrying, statement: For, scope: Scope) -> None:
         return True
 
     def distance() -> float | None:
-        return to_bound("<" if step is None or step > 0 else ">", reached, last)
+        behind = None if last is None or step is None else last + step  # the last one is driven
+        return to_bound("<" if step is None or step > 0 else ">", reached, behind)
 
     words = f"FOR {statement.name}"
     loop = Loop(statement.body, statement.stop.span, words, counts=True, distance=distance)

@@ -236,7 +236,8 @@ class Flow:
         def distance() -> float | None:
             counter = self._evaluator.names.value(statement.counter, scope)
             up = not _is_number(step) or step > 0  # type: ignore[operator]
-            return loops.to_bound("<" if up else ">", counter, stop)
+            behind = apply("+", stop, step)  # the last one is driven
+            return loops.to_bound("<" if up else ">", counter, behind)
 
         def ended() -> None:
             passes = loops.passes_to(start, stop, step)
