@@ -662,3 +662,18 @@ def test_nothing_is_proven_of_frames_that_nobody_knows(
     file.write_text(text)
     with pytest.raises(InputError, match=words):
         station(file, no_proof=False)
+
+
+def test_a_tool_that_nobody_knows_is_refused_until_it_is_answered(
+    write: Write, tmp_path: Path
+) -> None:
+    at = "MoveL [[%d,0,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tHand"
+    file = write({"one": ["go 0", at % 300, at % 330], "two": ["go 0", "go 1"]})
+    with pytest.raises(InputError, match=r"robot\.one: .*one\.mod:7.*tHand is not known: nothing"):
+        station(file)
+    tool = '[values]\ntHand = "[TRUE,[[0,0,50],[1,0,0,0]],[1,[0,0,20],[1,0,0,0],0,0,0]]"\n'
+    (tmp_path / "answers.toml").write_text(tool)
+    file.write_text(
+        file.read_text().replace('"one.mod"\n', '"one.mod"\nanswers = "answers.toml"\n')
+    )
+    station(file)
