@@ -108,4 +108,5 @@ def _answers(backup: Backup, task: Task) -> bytes:
 
 
 def _headed(backup: Backup, text: str) -> bytes:
-    return f"# From the backup {backup.source.name}: {backup.controller}\n{text}".encode()
+    said = ", ".join(filter(None, (backup.source.name, backup.controller, backup.version)))
+    return f"# From the backup {' '.join(said.split())}\n{text}".encode()
