@@ -22,6 +22,8 @@ _TYPE = re.compile(
 _OTHER = re.compile(r"ROB(?:\d+|_?[A-Z])?_(?P<rest>(?P<model>\d+).*)", re.IGNORECASE)
 """A type that has not all of these: ``ROB1_580_16``."""
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_MODEL = re.compile(r"(?<![\w.])(\d+[A-Z]*)(?![\w.])", re.IGNORECASE)
+"""The first word of a product's name with a number in it."""
 _REVISION = re.compile(r"Type_?[A-Z]\d?", re.IGNORECASE)
 """A variant of the mechanics with the lengths of its type."""
 _NEAR = 0.06
@@ -125,7 +127,16 @@ def _names(written: str, options: Sequence[str]) -> list[str]:
         names.append(f"{make} {plain} {variant}".rstrip())
         if variant and _REVISION.fullmatch(variant):
             names.append(f"{make} {plain}")
-    return list(dict.fromkeys([written, names[0], *fitting, *names[1:]]))
+    sure = _faster(found["model"], fitting) if not variant else []
+    return list(dict.fromkeys([*sure, written, names[0], *fitting, *names[1:]]))
+
+
+def _faster(model: str, fitting: Sequence[str]) -> Sequence[str]:
+    """Products of a variant that its type does not tell: the controller of an ``IRB 120T`` writes
+    ``ROB1_120_0.58_3``, as that of an ``IRB 120``, of the same lengths; its axes are faster."""
+    models = {one[1].upper() for option in fitting if (one := _MODEL.search(option))}
+    varied = re.compile(rf"{re.escape(model)}[A-Z]+", re.IGNORECASE)
+    return fitting if len(models) == 1 and varied.fullmatch(next(iter(models))) else []
 
 
 def _names_of_others(written: str, options: Sequence[str]) -> list[str]:
