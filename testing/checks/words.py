@@ -266,6 +266,9 @@ class WordsChecks(Subject):
                 frame = replace(frame, frame=Pose((0.01, 0.02, 0.03)))
             move = replace(line, work_object=frame)
             yield _Word("a work object", move, lambda move: move.work_object.pose)
+            held = replace(self._plain(MoveJ), work_object=frame)
+            name = "a work object of a move to joint values"
+            yield _Word(name, held, lambda move: move.work_object.pose)
         if spoken.user_frames:
             yield _Word("a user frame", move, lambda move: move.work_object.user)
         if spoken.tools and "tool" not in self.golden_none:
@@ -273,8 +276,8 @@ class WordsChecks(Subject):
             yield _Word("a tool", move, lambda move: move.tool.tcp)
         if spoken.stationary_tools:
             still = replace(_TOOL, robot_held=False)
-            held = replace(_FRAME if spoken.work_objects else WORLD, name="part", robot_held=True)
-            move = replace(line, tool=still, work_object=held)
+            part = replace(_FRAME if spoken.work_objects else WORLD, name="part", robot_held=True)
+            move = replace(line, tool=still, work_object=part)
             yield _Word(
                 "a stationary tool",
                 move,

@@ -56,6 +56,8 @@ BITING: Mapping[str, str] = {
     "both stated",
     "frames ignored on reading": 'a motion in a frame, frame = "…" stated',
     "frames ignored on writing": _DRAWN,
+    "frames of joint values ignored on reading": _CHECKED + "a frame does not change where such a "
+    "move ends, but the program says it, and has to come back",
     "loads ignored on reading": 'a motion with a load, load = "…" stated',
     "zones 100 times as large": "a zone with its size stated: size_percent, size_mm or tcp_mm",
     "zones as diameters": "a zone with its size stated, and room for half of it",

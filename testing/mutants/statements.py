@@ -11,7 +11,7 @@ from ...core.program.event import EventAnchor
 from ...core.program.move import Move, MoveC, MoveJ, Opaque, Wait
 from ...core.program.origin import Ownership
 from ...core.program.program import Program
-from ...core.program.target import PoseTarget
+from ...core.program.target import JointTarget, PoseTarget
 from ...core.program.tool import FLANGE, WORLD
 from ...core.program.zone import FINE, Fine, Radius
 from ...core.recording import Recording
@@ -63,6 +63,10 @@ def _other_turn(move: Move) -> Move:
     follows = move.orientation is ArcOrientation.FOLLOWS_ARC
     other = ArcOrientation.FIXED_FRAME if follows else ArcOrientation.FOLLOWS_ARC
     return replace(move, orientation=other)
+
+
+def _frameless_joints(move: Move) -> Move:
+    return replace(move, work_object=WORLD) if isinstance(move.target, JointTarget) else move
 
 
 def _without_label(move: Move) -> Move:
@@ -307,6 +311,12 @@ MUTANTS = (
     Mutant(
         "frames ignored on writing",
         in_writing(each_move(_with(work_object=WORLD))),
+        WORDS,
+        has("frame"),
+    ),
+    Mutant(
+        "frames of joint values ignored on reading",
+        in_reading(each_move(_frameless_joints)),
         WORDS,
         has("frame"),
     ),
