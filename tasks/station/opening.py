@@ -45,8 +45,14 @@ class OpenedStation:
     notes: tuple[Note, ...]
 
 
-def open_station(source: Sources, say: Callable[[str], None]) -> OpenedStation:
+def open_station(
+    source: Sources, say: Callable[[str], None], *, proven: bool = True
+) -> OpenedStation:
     """A station with its programs as driven, and what these do with signals.
+
+    Args:
+        proven: whether something is proven of it, as nothing can be where nobody knows a tool or
+            work object.
 
     Raises:
         InputError, MotionError: as `station_with`.
@@ -66,6 +72,8 @@ def open_station(source: Sources, say: Callable[[str], None]) -> OpenedStation:
     for member in file.members:
         say(f"reading {member.name}")
         read[member.name] = read_member(member, file)
+        if proven:
+            _refuse_assumed(file, member.name, read[member.name].program)
     try:
         together = moves_together(
             {name: one.program for name, one in read.items()},
@@ -142,6 +150,15 @@ def open_station(source: Sources, say: Callable[[str], None]) -> OpenedStation:
         )
     notes += [*shared.notes, *_alone(actions), *_passed(actions, members)]
     return OpenedStation(station, actions, tuple(unknown), tuple(notes))
+
+
+def _refuse_assumed(file: StationFile, name: str, program: Program) -> None:
+    from ...core.program.assumed_places import refuse_assumed
+
+    try:
+        refuse_assumed(program)
+    except InputError as error:
+        raise InputError(f"{file.file}: robot.{name}: {error}") from None
 
 
 def is_station_file(source: Path) -> bool:

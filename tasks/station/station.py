@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from ...core.station.clearances import PairClearance
     from ...core.station.interlocks import Saving
     from ...core.station.passing import Passed
-    from ...core.station.station import RobotStation
     from ..results.stations import DrivenStation
 
 JITTER = 50e-3
@@ -74,10 +73,8 @@ def station_with(
         raise OptionError(
             f"{switched('interlocks')} rests on proofs, which {switched('no_proof')} leaves out"
         )
-    opened = open_station(source, options.say)
+    opened = open_station(source, options.say, proven=not options.no_proof)
     station, actions = opened.station, opened.actions
-    if not options.no_proof:
-        _refuse_assumed(station)
     options.say("running all programs on one clock")
     clock = StationClock(station, actions)
     run = clock.run()
@@ -123,18 +120,6 @@ def station_with(
         tuple(found),
         tuple(notes),
     )
-
-
-def _refuse_assumed(station: RobotStation) -> None:
-    """Refuse programs whose tools or work objects nobody knows: what is proven would hold for what
-    they are taken for."""
-    from ...core.program.assumed_places import refuse_assumed
-
-    for name, member in station.members.items():
-        try:
-            refuse_assumed(member.program)
-        except InputError as error:
-            raise InputError(f"{station.file}: robot.{name}: {error}") from None
 
 
 def _both(

@@ -669,8 +669,11 @@ def test_a_tool_that_nobody_knows_is_refused_until_it_is_answered(
 ) -> None:
     at = "MoveL [[%d,0,500],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tHand"
     file = write({"one": ["go 0", at % 300, at % 330], "two": ["go 0", "go 1"]})
-    with pytest.raises(InputError, match=r"robot\.one: .*one\.mod:7.*tHand is not known: nothing"):
-        station(file)
+    refused = r"robot\.one: .*one\.mod:7.*tHand is not known: nothing"
+    with pytest.raises(InputError, match=refused):
+        station(file, no_proof=False)
+    with pytest.raises(InputError, match=refused):
+        flyby.station_zones(file)
     tool = '[values]\ntHand = "[TRUE,[[0,0,50],[1,0,0,0]],[1,[0,0,20],[1,0,0,0],0,0,0]]"\n'
     (tmp_path / "answers.toml").write_text(tool)
     file.write_text(
