@@ -23,7 +23,7 @@ from .options.texts import joint_target
 from .setup import RobotOptions, check_language, configurations, setup_of
 
 if TYPE_CHECKING:
-    from ..core.backup.backup import Backup
+    from ..core.backup.backup import Backup, BackupRobot
     from ..core.cell.cell import Cell
     from ..core.program.program import Program
     from ..core.program.target import JointTarget
@@ -210,15 +210,21 @@ def surrounding(source: str | Path) -> Note | None:
     return surrounding_note(Path(source), registry())
 
 
-def arm_around(source: str | Path) -> Robot | None:
-    """The arm of the backup that a program file lies in; None where it tells of none or several."""
+def robot_around(source: str | Path) -> BackupRobot | None:
+    """The robot of the backup that a program file lies in: that of its task, else the only one;
+    None where none or several may be it."""
     if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
         return None
     found = backup_round(Path(source), registry())
-    with suppress(FlybyError):
-        backup = None if found is None else find_backup(found[1], registry())
-        arms = () if backup is None else tuple(one.robot for one in backup.robots)
-        return arms[0] if len(arms) == 1 else None
+    if found is None:
+        return None
+    with suppress(FlybyError, OSError):
+        backup = find_backup(found[1], registry())
+        if backup is not None:
+            name = Path(source).absolute().relative_to(found[1]).as_posix()
+            own = [task.robot for task in backup.tasks if name in task.files]
+            index = own[0] if len(own) == 1 else 0 if len(backup.robots) == 1 else None
+            return None if index is None else backup.robots[index]
     return None
 
 

@@ -19,7 +19,7 @@ from ...core.program.entry_point import ALL
 from ...core.source.text.files import LARGEST_FILE, refuse_no_text
 from ..backup.opening import task_of
 from ..fitting import said_to_fit
-from ..read import SourceOptions, arm_around, backup_in, read_undriven, read_with, vendor_of
+from ..read import SourceOptions, backup_in, read_undriven, read_with, robot_around, vendor_of
 from ..setup import setup_of, start_of
 
 if TYPE_CHECKING:
@@ -57,10 +57,12 @@ def with_robot(
     backup = backup_in(source, options)
     if backup is not None and _says_its_robot(backup, options):
         return options, ()
-    own = arm_around(source) if backup is None else None
-    if own is not None:
-        said = f"{own.name} is taken, which is the robot of the backup around {source}"
-        return replace(options, robot=own.name), (Note(said),)
+    own = robot_around(source) if backup is None else None
+    if own is not None and own.robot is not None:
+        said = f"{own.robot.name} is taken, which is the robot of the backup around {source}"
+        return replace(options, robot=own.robot.name), (Note(said),)
+    if own is not None and own.written:
+        return options, ()  # it is another one than flyby knows: what reads it says so
     found = _guessed(source, options)
     if found is None:
         return options, ()

@@ -12,7 +12,7 @@ from flyby.core.registry import all_listed, find_vendor
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
 from flyby.tasks.read import SourceOptions
 
-from ..vendors.abb.backup.station import Station
+from ..vendors.abb.backup.station import Station, one_robot
 
 UNUSED = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 
@@ -193,6 +193,12 @@ def test_a_program_in_a_backup_is_for_the_robot_of_that(tmp_path: Path) -> None:
     robot, said = taken(main)
     assert robot == "abb/irb4600-40-255" and "the robot of the backup around" in said
     assert taken(backup) == (None, "")  # it says so itself
+    strange = Station(products=("English", "IRB 9990-77/9.9"), moc=one_robot(kind="9990_9.9_77"))
+    other = strange.write(tmp_path / "Backup_2")
+    (main,) = other.rglob("MainModule.mod")
+    assert taken(main) == (None, "")  # there is one, and it is not known
+    with pytest.raises(InputError, match="which robot"):
+        read_or_guess(main, SourceOptions())
 
 
 def test_a_backup_that_names_no_arm_is_driven_by_one_that_can(tmp_path: Path) -> None:
