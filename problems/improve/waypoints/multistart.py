@@ -23,12 +23,16 @@ from ..progress import Progress, Report
 from .block_search import FEASIBLE, FINE_BOX, FINE_ITERATIONS, Answer, Job, JobStage, Shared, work
 from .starts import starting_points, variations
 
-ROUNDS = ((14, 0.5), (10, 1.0), (10, 1.0), (10, 1.0))
-"""Iterations of a round, and the share of its searches that go on after it if they may win."""
-_NEAR_ROUNDS = ((14, 1.0),)
+_ROUNDS = ((0.5, 0.7), (0.5, 0.5), (0.5, 0.5), (1.0, 1.0), (1.0, 1.0), (1.0, 1.0))
+"""Iterations of a round for each free variable, as an iteration shows one kink and where a search
+leads is not seen before it knows some; and the share of its searches that go on after it if they
+may win."""
+_NEAR_ROUNDS = ((0.75, 0.5), (0.75, 1.0))
 """The same of variations,"""
-_FINE_ROUNDS = ((10, 1.0), (15, 1.0))
+_FINE_ROUNDS = ((0.5, 0.7), (0.5, 0.7), (1.5, 1.0))
 """and of refinements."""
+_SHORTEST, _LONGEST = 5, 15
+"""Iterations of a round."""
 _LEAST = 3
 """Searches of a block that go on at least if they may win."""
 _FALLS = 3.0
@@ -108,7 +112,7 @@ class _Improvement:
 
     def search(self, jobs: list[Job]) -> None:
         """From every start."""
-        self._race("searching, round {}", jobs, ROUNDS)
+        self._race("searching, round {}", jobs, _ROUNDS)
 
     @property
     def searched(self) -> list[Answer | None]:
@@ -144,29 +148,38 @@ class _Improvement:
         best = self.best[answer.block]
         return best is None or answer.objective < best.objective
 
-    def _race(self, stage: str, jobs: list[Job], rounds: Sequence[tuple[int, float]]) -> None:
+    def _race(self, stage: str, jobs: list[Job], rounds: Sequence[tuple[float, float]]) -> None:
         """Do searches in rounds, and keep what each of them comes to.
 
         Args:
             stage: what they are called; "{}" in it is the number of the round.
-            jobs: with all the iterations that they may take.
-            rounds: see `ROUNDS`; the last one takes the iterations that are left.
+            jobs: with all the iterations that they may take, as many for each of a block.
+            rounds: see `_ROUNDS`; after them comes one with the iterations that are left.
         """
-        for number in range(len(rounds) + 1):
+        for number, (length, share) in enumerate((*rounds, (np.inf, 0.0)), start=1):
             if not jobs:
                 return
-            left = jobs[0].iterations
-            most = rounds[number][0] if number < len(rounds) else left
-            turn = [replace(job, iterations=min(most, left)) for job in jobs]
-            made = self._do(stage.format(number + 1), turn)
-            if self.over or number == len(rounds) or left <= most:
+            turn = [replace(job, iterations=self._turn(job, length)) for job in jobs]
+            left = {
+                job.block: job.iterations - t.iterations for job, t in zip(jobs, turn, strict=True)
+            }
+            made = self._do(stage.format(number), turn)
+            if self.over:
                 return
-            going = _going_on(self._shared, made, self.searched, rounds[number][1])
+            going = _going_on(self._shared, made, self.searched, share)
+            going = [answer for answer in going if left[answer.block]]
             self._found = [answer for answer in self._found if answer not in going]
             jobs = [
-                replace(jobs[0], block=a.block, memory=a.memory, iterations=left - most)
+                replace(jobs[0], block=a.block, memory=a.memory, iterations=left[a.block])
                 for a in going
             ]
+
+    def _turn(self, job: Job, length: float) -> int:
+        """Iterations of a search in one round; in one of infinite length all that are left."""
+        if length == np.inf:
+            return job.iterations
+        wished = np.ceil(length * len(self._shared.blocks[job.block].variables.free))
+        return min(int(np.clip(wished, _SHORTEST, _LONGEST)), job.iterations)
 
     def _do(self, stage: str, jobs: Sequence[Job]) -> list[Answer]:
         """Do jobs, and keep what comes of them."""
