@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..display import counted, in_line
 from ..door import spelt
-from ..errors import FlybyError, Note, OptionError, SourceError
+from ..errors import FlybyError, Note, OptionError, SourceError, Span
 from ..program.question import QuestionKind
 from .execution.answers import Answers, stands_in
 from .execution.course import AnswerError
@@ -27,6 +27,8 @@ Files = Mapping[str, SourceFile]
 
 _TRIED = 12
 """Conditions, and branches of each, that are tried for one whose moves are known."""
+_TRIES = 100_000
+"""Lines that are read, and statements that are executed, for that."""
 
 
 @dataclass(frozen=True)
@@ -156,26 +158,52 @@ def _to_known_places(
     Raises:
         SourceError: it cannot be read.
     """
-    program = _to_an_end(files, main, options, read)
+    executed: list[Span] = []
+    noted = replace(options, executed=None if options.executed is None else executed.append)
+    program = _to_an_end(files, main, noted, read)
     moving = bool(program.moves) or any(entry.moves for entry in program.entries)
-    if not options.answers.goes_on or not moving or _is_driven(program, options.start):
-        return program
+    if options.answers.goes_on and moving and not _is_driven(program, options.start):
+        program, executed = _by_another_branch(files, main, options, read, (program, executed))
+    if options.executed is not None:
+        for span in executed:
+            options.executed(span)
+    return program
+
+
+def _by_another_branch(
+    files: Files,
+    main: str,
+    options: ReadOptions,
+    read: Callable[[Files, str, ReadOptions], Program],
+    first: tuple[Program, list[Span]],
+) -> tuple[Program, list[Span]]:
+    """The program as it goes with one branch taken otherwise that leads to moves that are known,
+    and what is executed of it; what was read first if none does."""
+    program, _ = first
     branches = [q for q in program.questions if q.kind is QuestionKind.BRANCH and not q.answered]
+    lines, spent = sum(file.text.count("\n") for file in files.values()), 0
     for branch in reversed(branches[-_TRIED:]):
         for number in range(1, _TRIED + 1):
+            if spent > _TRIES:
+                return first
+            executed: list[Span] = []
             answers = options.answers.with_branch(branch.key, number)
+            tried = replace(options, answers=answers, executed=executed.append)
             try:
-                other = _to_an_end(files, main, replace(options, answers=answers), read)
+                other = _to_an_end(files, main, tried, read)
             except FlybyError:
                 break  # there are no more branches, or nothing can be made of this one
+            finally:
+                spent += lines + len(executed)
             if number != branch.taken and _is_driven(other, options.start):
                 leads = "drives to what nobody knows" if program.moves else "leads to no move"
                 message = (
                     f"branch {branch.taken} {leads}: branch {number}, whose moves are known, "
                     "is taken instead"
                 )
-                return replace(other, notes=(Note(message, span=branch.span), *other.notes))
-    return program
+                note = Note(message, span=branch.span)
+                return replace(other, notes=(note, *other.notes)), executed
+    return first
 
 
 def _name_answers(error: SourceError, files: Files, answers: Answers) -> None:
