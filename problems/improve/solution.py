@@ -235,7 +235,7 @@ def measure(controller: Controller, run: Run, certificate: Certificate | None = 
         float(np.linalg.norm(steps, axis=1).sum()),
         _peak_acceleration(run.timing),
         float(run.trajectory.position[:, 2].min()) if held else None,
-        _energy(controller, run),
+        squared_torque(controller, run),
         certificate.clearance if certificate is not None and certificate.proven else None,
     )
 
@@ -286,7 +286,8 @@ def _peak_acceleration(timing: Timing) -> float:
     return float(np.linalg.norm(rate * stamp.u[:, None, None] + bend * x, axis=-1).max())
 
 
-def _energy(controller: Controller, run: Run) -> FloatArray | None:
+def squared_torque(controller: Controller, run: Run) -> FloatArray | None:
+    """(N,) ∫ τⱼ² dt of each joint, N² m² s; None where the robot's inertias are not known."""
     try:
         made = controller.energy(run.program, run.timing)
     except InputError:

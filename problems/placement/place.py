@@ -32,6 +32,7 @@ from ...core.program.target import JointTarget
 from ...core.program.tool import Tool
 from ...core.robot.model import Robot
 from ...core.spatial.pose import Pose
+from ..improve.solution import squared_torque
 from .reach import Stops
 
 Shift = tuple[float, float, float, float]
@@ -99,12 +100,15 @@ class PlacedBase:
         base: in the world.
         run: the program as driven.
         certificate: of its clearance; None if it was not asked for.
+        energy: ∫ τ² dt of all joints, N² m² s; None where it was not asked for, or the robot's
+            inertias are not known.
     """
 
     shift: Shift
     base: Pose
     run: Run
     certificate: Certificate | None = None
+    energy: float | None = None
 
 
 @dataclass(frozen=True)
@@ -323,7 +327,7 @@ class _Search:
         return x, y, z, turn
 
     def _with(self, placed: PlacedBase) -> PlacedBase:
-        """With its certificate."""
+        """With its certificate and what it takes of energy."""
         self.tell(f"proving a base, {placed.run.duration:.3f} s")
         robot = self._robot(placed.shift)
         scenes = self._scenes(placed)
@@ -337,7 +341,12 @@ class _Search:
         )
         if self.beside is not None and certificate.proven:
             certificate = self.beside(controller, placed.run) or certificate
-        return replace(placed, certificate=certificate)
+        energy = squared_torque(controller, placed.run)
+        return replace(
+            placed,
+            certificate=certificate,
+            energy=None if energy is None else float(energy.sum()),
+        )
 
 
 def _is_proven(placed: PlacedBase) -> bool:

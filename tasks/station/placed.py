@@ -21,6 +21,7 @@ COLUMNS = (
     ("z, mm", "right"),
     ("turned, °", "right"),
     ("cycle time, s", "right"),
+    ("energy, %", "right"),
     ("clearance", "left"),
 )
 _REFUSED = 5
@@ -72,14 +73,16 @@ class PlacedRobot:
         return f"base = {{ xyz_mm = [{xyz}], quat_wxyz = [{quaternion}] }}"
 
     def rows(self) -> list[tuple[str, ...]]:
-        """The base as it is, the best, and faster ones that are not proven."""
+        """The base as it is, the best, and faster ones that are not proven; energy (torque²) in
+        percent of that from the base as it is."""
         found = self.found
+        whole = None if found.before is None else found.before.energy
         rows = []
         if found.before is not None:
-            rows.append(_row("as it is", found.before))
+            rows.append(_row("as it is", found.before, whole))
         if found.best is not None:
-            rows.append(_row("best", found.best))
-        return [*rows, *(_row("not proven", one) for one in found.refused[:_REFUSED])]
+            rows.append(_row("best", found.best, whole))
+        return [*rows, *(_row("not proven", one, whole) for one in found.refused[:_REFUSED])]
 
     def as_json(self) -> dict[str, Any]:
         """All figures; times in s, lengths in mm."""
@@ -101,7 +104,7 @@ class PlacedRobot:
         return page(repr(self), table(COLUMNS, self.rows()), notes=self.notes)
 
 
-def _row(what: str, placed: PlacedBase) -> tuple[str, ...]:
+def _row(what: str, placed: PlacedBase, whole: float | None) -> tuple[str, ...]:
     proof = placed.certificate
     said = "" if proof is None else proof.message
     if proof is not None and proof.proven:
@@ -109,7 +112,8 @@ def _row(what: str, placed: PlacedBase) -> tuple[str, ...]:
         said = f"{1e3 * proof.clearance:.1f} mm proven" if near else "nothing is near"
     place = [f"{1e3 * v:.1f}" for v in placed.base.position]
     turned = f"{math.degrees(placed.shift[3]):.1f}"
-    return (what, *place, turned, f"{placed.run.duration:.3f}", said)
+    energy = "" if not whole or placed.energy is None else f"{100 * placed.energy / whole:.1f}"
+    return (what, *place, turned, f"{placed.run.duration:.3f}", energy, said)
 
 
 def _json(placed: PlacedBase) -> dict[str, Any]:
@@ -118,5 +122,6 @@ def _json(placed: PlacedBase) -> dict[str, Any]:
         "position_mm": [1e3 * v for v in placed.base.position],
         "quaternion_wxyz": list(placed.base.quaternion),
         "cycle_time_s": placed.run.duration,
+        "energy_n2m2s": placed.energy,
         "certificate": None if proof is None else proof.message,
     }

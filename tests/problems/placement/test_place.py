@@ -69,6 +69,13 @@ def test_never_slower_than_where_it_is(tmp_path: Path) -> None:
     made = flyby.place(flyby.read(program, cell=cell), room="100,100,0,20")
     assert made.found.before is not None and made.found.best is not None
     assert made.found.best.run.duration <= made.found.before.run.duration
+    as_it_is, best = made.rows()[:2]
+    share = 100 * made.found.best.energy / made.found.before.energy
+    assert as_it_is[-2] == "100.0" and best[-2] == f"{share:.1f}"
+    driven = made.found.before.run.trajectory
+    torque = flyby.robot("abb/irb120-3-058").inverse_dynamics(driven.q, driven.dq, driven.ddq)
+    whole = np.trapezoid((torque**2).sum(axis=1), driven.t)
+    assert made.found.before.energy == pytest.approx(whole, rel=0.05)
 
 
 def test_estimates_tell_reach(tmp_path: Path) -> None:
