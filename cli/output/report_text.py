@@ -159,7 +159,10 @@ def print_questions(questions: Sequence[Question]) -> None:
     for line in lines:
         warn(f"not known: {line}")
     if lines:
-        warn("`flyby ask` lists them as a file that `--io` takes")
+        warn(
+            "the same command with `ask` for `emulate`, and `--out answers.toml`, writes them as a "
+            "file that `--io answers.toml` takes"
+        )
 
 
 def _rows(report: Report) -> list[tuple[str, ...]]:
