@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ...core.errors import FlybyError, InputError, Note
-from ...core.spatial.pose import IDENTITY, Pose
 from ..read import SourceOptions, read_with
 from ..results.cell_course import CellCourse
 from ..setup import Setup, setup_of_program, start_of
@@ -15,6 +14,7 @@ from ..setup import Setup, setup_of_program, start_of
 if TYPE_CHECKING:
     from ...core.dialect import SignalWords
     from ...core.program.program import Program
+    from ...core.spatial.pose import Pose
     from ...core.station.actions import MeetingPoint
     from ...core.station.carried import Carrier
     from ...core.station.station import CarriedMoves, StationRobot
@@ -77,6 +77,7 @@ def read_member(stated: MemberFile, file: StationFile) -> ReadMember:
     Raises:
         InputError: it cannot be read; the message names file and robot.
     """
+    from ...core.spatial.pose import IDENTITY
     from ...core.station.actions import meetings_of
     from ...core.station.passing import stopping, waits_behind_zones
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...core.errors import InputError, MotionError, Note
-from ...core.spatial.pose import IDENTITY
 from ..setup import start_of
 from .members import ReadMember, drive_members, read_member
 from .names import check_names
@@ -212,6 +211,7 @@ def _with_own_zones(
     """The station file with the world zones that a robot's program sets up itself, and what is said
     of them. For outputs for which the file has a zone that one counts."""
     from ...core.source.reading import Reading
+    from ...core.spatial.pose import IDENTITY
 
     reading = member.program.reading
     if words is None or words.zones is None or not isinstance(reading, Reading):
