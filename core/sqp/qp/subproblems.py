@@ -15,9 +15,9 @@ from .problem import Backend, QpSolution, QpStatus, QuadraticProgram
 
 _POLISHING = 1
 _EXACT = 1e-9
-_FEW = 2
-"""Systems that a back end is worth up to which a guess is not tried after one that led nowhere:
-systems of full matrices cost as much as what they save."""
+_LONGEST = 8
+"""Subproblems in a row for which no guess is tried, at most: after each that led nowhere twice as
+many as before, as the systems that it takes may cost more than the back end."""
 _INEXACT = 1e-5
 """Error of a solution from a back end that gave up at which it is still taken."""
 
@@ -45,7 +45,7 @@ class Subproblems:
             self.known.setdefault(backend.name, backend)
         self._backends = tuple(self.known[backend.name] for backend in backends)
         self.seconds = 0.0
-        self._guess = True
+        self._pause = self._left = 0
         self.used = self._backends[0].name
 
     def solve(self, qp: QuadraticProgram, warm: QpSolution | None = None) -> QpSolution:
@@ -62,11 +62,13 @@ class Subproblems:
     def _solve(self, qp: QuadraticProgram, warm: QpSolution | None) -> QpSolution:
         if not (np.isfinite(qp.d_lower).any() or np.isfinite(qp.d_upper).any() or len(qp.lower)):
             return self._unconstrained(qp)
-        if warm is not None and (self._guess or self._backends[0].worth > _FEW):
+        self._left -= 1
+        if warm is not None and self._left < 0:
             found = self._from_guess(qp, warm)
-            self._guess = found is not None
             if found is not None:
+                self._pause = 0
                 return found
+            self._pause = self._left = min(2 * self._pause + 1, _LONGEST)
         found = None
         for backend in self._backends:
             found = _doubted(qp, backend.solve(qp, warm))

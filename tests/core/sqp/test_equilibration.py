@@ -136,3 +136,19 @@ def test_a_claim_that_cannot_be_true_calls_the_fallback(status: QpStatus) -> Non
     found = Subproblems((_Claims(status), backend)).solve(qp)
     assert found.status is QpStatus.SOLVED
     np.testing.assert_allclose(found.d, [1.0])
+
+
+def test_a_guess_that_leads_nowhere_rests(monkeypatch: pytest.MonkeyPatch) -> None:
+    solver = Subproblems(make_backends("clarabel", False))
+    qp = program(3, 0.0)
+    first = solver.solve(qp)
+    tried = []
+    monkeypatch.setattr(active_set, "settled", lambda *_: tried.append(1))
+    monkeypatch.setattr(solver, "_polished", lambda _, found: found)
+    for _ in range(40):
+        assert solver.solve(qp, first).status is QpStatus.SOLVED
+    assert len(tried) == 6  # the 1st, 3rd, 7th, 15th, 24th and 33rd
+    monkeypatch.undo()
+    for _ in range(20):
+        assert solver.solve(qp, first).status is QpStatus.SOLVED
+    assert solver._pause == 0
