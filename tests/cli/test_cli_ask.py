@@ -73,7 +73,7 @@ def test_emulate_says_it_in_a_line_a_kind(flyby: Flyby, cell: Path) -> None:
     assert result.exit_code == 0
     asked = [line for line in result.stderr.splitlines() if "not known: " in line]
     assert len(asked) == 4
-    assert "`flyby ask` lists them" in result.stderr
+    assert "the same command with `ask` for `emulate`, and `--out answers.toml`" in result.stderr
 
 
 def test_a_file_that_is_there_is_kept(flyby: Flyby, cell: Path) -> None:

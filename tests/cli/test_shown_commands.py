@@ -54,6 +54,7 @@ NOT_RUN = {
     "flyby experiment --cell CELL": "designs an hour of runs: by tests of experiments, shorter",
     "flyby identify LOGS": "fits for minutes: by tests of fits, on logs that are made there",
     "flyby emulate PROGRAM --robot ROBOT --motion mine.toml": "takes what identify would write",
+    "flyby place PROGRAM --cell CELL --order": "by tests of orders, with tasks that are made there",
     "flyby station STATION": "shows all options in brackets; the line above it is run",
 }
 
