@@ -340,6 +340,14 @@ class StationPage:
                 yield replace(table, rows=rows)
         findings = [PageRow((text,), "error") for text in made.findings()]
         findings += [PageRow((str(note),), "warning") for note in made.notes]
+        slowed = [name for name, one in made.run.schedules.items() if len(one.pace.own) > 1]
+        if slowed:
+            said = (
+                f"{', '.join(slowed)}: moves that are made together are drawn here as each robot "
+                "drives them by itself, so that those that are slowed down, and what is behind "
+                "them, come too soon; the station's time and its waits are right"
+            )
+            findings.append(PageRow((said,), "warning"))
         if findings:
             yield PageTable("Notes", [PageColumn("what")], findings)
 

@@ -15,6 +15,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.target import PoseTarget
 from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import Reading
+from flyby.tasks.pages.station_page import station_page
 from flyby.tasks.results.stations import DrivenStation
 from flyby.tasks.setup import setup_of_program
 
@@ -83,3 +84,11 @@ def test_what_the_station_answers_is_no_finding() -> None:
     made = flyby.station_check(ROOT / "multimove" / "station.toml", no_proof=True)
     told = [finding.message for found in made.robots.values() for finding in found]
     assert told and not [one for one in told if "no axis of this robot" in one or "alone" in one]
+
+
+def test_the_page_says_whose_moves_it_draws_too_soon() -> None:
+    (notes,) = [
+        table for table in station_page(driven("multimove")).tables if table.title == "Notes"
+    ]
+    said = [row.cells[0] for row in notes.rows]
+    assert any(re.match("rob1, rob2, stn1: .*come too soon", text) for text in said)
