@@ -6,7 +6,7 @@ cell, with what lies on the table.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,9 +22,6 @@ from ..errors import InputError
 from ..handling.handling import Handling
 from ..program.tool import Tool
 from .station import CarriedMoves, StationRobot
-
-_FAR = 1.0
-"""m up to which distances are measured."""
 
 
 def carried_work(
@@ -54,7 +51,7 @@ def carried_work(
             scenes_along(cell, handling, worker.run.program, lambda: worker.run.path, clearance),
             things,
         )
-        found, least = [], (np.inf, 0.0)
+        found = []
         for block in moves.blocks:
             rows = np.isin(worker.run.path.sample_moves(), list(block))
             if not rows.any():
@@ -71,9 +68,8 @@ def carried_work(
                     pair = pair[::-1]
                 times = made.time or 0.0, _passed(worker, carrier, moves, block[move], made)
                 found.append(Unproven(move, pair, made.distance, times, made.message))
-            least = min(least, _least(worker, scenes, block))
         frames = {frame_of_axis(carrier.cell.robot, axis) for axis in moves.axes}
-        yield CarriedWork(0, frozenset(frames), moves.blocks, tuple(found), least)
+        yield CarriedWork(0, frozenset(frames), moves.blocks, tuple(found))
 
 
 def _passed(
@@ -132,19 +128,3 @@ def _beside(scenes: SceneOf, things: set[str]) -> SceneOf:
         return known[id(whole)][1]
 
     return scene
-
-
-def _least(worker: StationRobot, scenes: SceneOf, block: Mapping[int, int]) -> tuple[float, float]:
-    """The least distance at the samples of the motion, m, and when, s of the worker's own."""
-    trajectory = worker.run.trajectory
-    least = np.inf, 0.0
-    for move in block:
-        rows = np.flatnonzero(trajectory.move == move)
-        scene = scenes(worker.run.program.moves[move].tool, move)
-        if not len(rows) or not len(scene.pairs):
-            continue
-        found = scene.distances(trajectory.q[rows], _FAR).distance.min(axis=1)
-        k = int(found.argmin())
-        if found[k] < min(least[0], _FAR):
-            least = float(found[k]), float(trajectory.t[rows[k]])
-    return least

@@ -165,6 +165,21 @@ class StationProver:
             ):
                 yield self._of(one, other, passes), passes
 
+    def standing(self, schedule: Schedule, t: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Where a robot is on the station's clock.
+
+        Args:
+            schedule: of the robot.
+            t: (T,) s.
+
+        Returns:
+            (T, N) its configurations, and (T,) the moves that it is on.
+        """
+        trajectory, own = self._station.members[schedule.name].run.trajectory, schedule.own(t)
+        row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
+        q = np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
+        return q, trajectory.move[row]
+
     def any_time(self, one: str, other: str) -> PairVerdict:
         """What is proven of two robots whatever the clocks say."""
         meetings, wanted = Meetings.at_any_time(), self._station.clearance
@@ -316,15 +331,11 @@ class StationProver:
         first, least, at = 0.0, np.inf, 0.0
         for finer in _SAMPLED:
             t = np.arange(first, last + step, finer)
-            (one, first_moves), (other, other_moves) = (self._at(s, t) for s in schedules)
-            found, k, _ = prover.nearest(one, other, (first_moves, other_moves))
+            (one, first_moves), (other, other_moves) = (self.standing(s, t) for s in schedules)
+            found, k, _ = prover.nearest(one, other, (first_moves, other_moves), at_once=True)
             if found < least:
                 least, at = found, float(t[k])
             first, last, step = max(at - finer, 0.0), at + finer, finer
-        for work in prover.carried:
-            if work.least[0] < least:
-                own = np.full((1, 2), work.least[1])
-                least, at = work.least[0], float(schedules[work.worker].clocked(own)[0, 0])
         return least, at
 
     def _until(self, schedule: Schedule) -> float:
@@ -332,13 +343,6 @@ class StationProver:
         if np.isfinite(schedule.end):
             return schedule.end
         return schedule.waits[-1].begin
-
-    def _at(self, schedule: Schedule, t: FloatArray) -> tuple[FloatArray, IntArray]:
-        """Configurations, and moves, of a robot at times (T,) s of the station."""
-        trajectory, own = self._station.members[schedule.name].run.trajectory, schedule.own(t)
-        row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
-        q = np.stack([np.interp(own, trajectory.t, q) for q in trajectory.q.T], -1)
-        return q, trajectory.move[row]
 
 
 def _own(a: str, b: str, one: str, other: str) -> tuple[str, str] | None:

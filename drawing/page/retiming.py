@@ -1,18 +1,26 @@
-"""A motion laid on another clock: the same motion, with rests in which others are waited for."""
+"""A motion laid on another clock: the same motion, with rests in which others are waited for.
+
+Moves that are made together take as long as the slowest; others' motions are slower there.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 
 from ...core.arrays import BoolArray, FloatArray, IntArray
+from ...core.station.station import ClockPace
+from .curves import ACCELERATION, ENERGY, PUSH, SPEED, TORQUE
 from .packing import Quantised
-from .track_content import PageChannel, PageClearance, PageLimits, PageMotion, PageTrack
+from .track_content import PageChannel, PageClearance, PageFlag, PageLimits, PageMotion, PageTrack
 
 _SAME = 1e-7
 """s within which times are one."""
+_SLOWED = 1e-3
+"""Share of the speed by which a motion is slower, from which on its torques are others."""
 
 
 @dataclass(frozen=True)
@@ -25,42 +33,49 @@ class OtherClock:
         length: (W,) s that it does.
         lag: s by which the motion is behind what begins it: a rest that the motion comes to so
             soon behind the beginning of a move is before that move.
+        pace: at which the own clock passes between rests.
     """
 
     begin: float
     at: FloatArray
     length: FloatArray
     lag: float = 0.0
+    pace: ClockPace = field(default_factory=ClockPace.steady)
 
     def first(self, own: FloatArray) -> FloatArray:
         """The other clock's times (T,) at own times (T,): before rests."""
-        return self._at(own, "left")
+        return self._passed(own, -np.inf) + self._rested(own, "left")
 
     def last(self, own: FloatArray) -> FloatArray:
         """The same behind rests."""
-        return self._at(own, "right")
+        return self._passed(own, np.inf) + self._rested(own, "right")
 
     def begins(self, own: FloatArray) -> FloatArray:
         """When what begins at own times (T,) begins: behind rests."""
-        return self.last(own + self.lag) - self.lag
+        return self._passed(own, np.inf) + self._rested(own + self.lag, "right")
+
+    def first_at(self, own: float) -> float:
+        """The other clock's time at an own one, before rests."""
+        return float(self.first(np.array([own]))[0])
 
     def last_at(self, own: float) -> float:
         """The other clock's time at an own one, behind rests."""
         return float(self.last(np.array([own]))[0])
 
-    def own(self, other: FloatArray) -> FloatArray:
-        """Own times (T,) at times (T,) of the other clock; before the beginning below zero."""
-        starts = self.at + self.begin + np.append(0.0, np.cumsum(self.length))[:-1]
-        left = other - self.begin
-        for start, length in zip(starts, self.length, strict=True):
-            left = left - np.clip(other - start, 0.0, length)
-        return np.asarray(left)
+    def speed(self, own: FloatArray, before: BoolArray) -> FloatArray:
+        """s of its own a second (T,), just before own times (T,) or just behind them."""
+        begin = np.where(before, own - _SAME, own)
+        return np.asarray(_SAME / (self.pace.passed(begin + _SAME) - self.pace.passed(begin)))
 
-    def _at(self, own: FloatArray, side: str) -> FloatArray:
-        passed = np.append(0.0, np.cumsum(self.length))
+    def _passed(self, own: FloatArray, to: float) -> FloatArray:
+        """Begun and passed at the pace, just before own times or just behind them."""
+        return np.asarray(self.begin + np.maximum(self.pace.passed(np.nextafter(own, to)), 0.0))
+
+    def _rested(self, own: FloatArray, side: Literal["left", "right"]) -> FloatArray:
+        """s of rests before own times, or up to behind them."""
+        rested = np.append(0.0, np.cumsum(self.length))
         edge = own - _SAME if side == "left" else own + _SAME
-        rests = np.searchsorted(self.at, edge, "left" if side == "left" else "right")
-        return np.asarray(own + self.begin + passed[rests])
+        return np.asarray(rested[np.searchsorted(self.at, edge, side)])
 
 
 def on_clock(track: PageTrack, clock: OtherClock, grid: FloatArray) -> PageTrack:
@@ -70,6 +85,9 @@ def on_clock(track: PageTrack, clock: OtherClock, grid: FloatArray) -> PageTrack
         track: on its own.
         clock: beside it.
         grid: (G,) s of the other clock that become knots, so that curves over them can be added.
+
+    What drives more slowly takes less acceleration and torque than the curves say: there they have
+    no value, and the work has none from there on.
     """
     motion, channels = _with_rests(track.motion, track.channels, clock)
     motion, channels = _with_knots(motion, channels, grid)
@@ -87,7 +105,7 @@ def on_clock(track: PageTrack, clock: OtherClock, grid: FloatArray) -> PageTrack
             for move in track.moves
         ],
         limits=None if track.limits is None else _limits(track.limits, clock),
-        flags=[replace(flag, t=float(clock.first(np.array([flag.t]))[0])) for flag in track.flags],
+        flags=[_flag(flag, clock) for flag in track.flags],
         clearance=None if track.clearance is None else _clearance(track.clearance, clock),
     )
 
@@ -148,6 +166,11 @@ def _kept(column: Quantised, rows: BoolArray) -> Quantised:
     return replace(column, values=column.values[rows])
 
 
+def _flag(flag: PageFlag, clock: OtherClock) -> PageFlag:
+    begin, end = clock.pace.passed(np.array([flag.t, flag.t + flag.duration]))
+    return replace(flag, t=clock.first_at(flag.t), duration=float(end - begin))
+
+
 def _limits(limits: PageLimits, clock: OtherClock) -> PageLimits:
     begin, end = limits.begin, limits.end
     return replace(
@@ -165,10 +188,11 @@ def _clearance(clearance: PageClearance, clock: OtherClock) -> PageClearance:
 def _with_rests(
     motion: PageMotion, channels: Sequence[PageChannel], clock: OtherClock
 ) -> tuple[PageMotion, list[PageChannel]]:
-    """Two knots where a rest begins and ends, all on the other clock."""
+    """Two knots where a rest begins and ends, or the pace changes, all on the other clock."""
     own = motion.t.values
     inside = np.clip(clock.at, own[0], own[-1])
-    motion, channels = _with_knots(motion, channels, np.repeat(inside, 2))
+    changes = clock.pace.own[(clock.pace.own > own[0]) & (clock.pace.own < own[-1])]
+    motion, channels = _with_knots(motion, channels, np.repeat(np.append(inside, changes), 2))
     own = motion.t.values
     times = clock.last(own)
     still = np.zeros(len(own), dtype=bool)
@@ -177,8 +201,23 @@ def _with_rests(
         still[knots] = True
         # The rest lies between the two that were put in last.
         times[knots[:-1]] = clock.first(own[knots[:-1]])
-    speeds = [replace(column, values=np.where(still, 0.0, column.values)) for column in motion.dq]
-    return replace(motion, t=replace(motion.t, values=times), dq=speeds), channels
+    speed = clock.speed(own, np.append(np.diff(own) <= _SAME, False))
+    speed[still] = 0.0
+    scaled = [replace(column, values=column.values * speed) for column in motion.dq]
+    motion = replace(motion, t=replace(motion.t, values=times), dq=scaled)
+    return motion, [_at_speed(one, speed, still) for one in channels]
+
+
+def _at_speed(channel: PageChannel, speed: FloatArray, still: BoolArray) -> PageChannel:
+    slowed = (np.abs(speed - 1.0) > _SLOWED) & ~still
+    values = channel.values.values
+    if channel.chart == SPEED and not channel.stepped:
+        values = np.where(still, values, values * speed)
+    elif channel.chart in (ACCELERATION, TORQUE, PUSH):
+        values = np.where(slowed, np.nan, values)
+    elif channel.chart == ENERGY:
+        values = np.where(np.cumsum(slowed) > 0, np.nan, values)
+    return replace(channel, values=replace(channel.values, values=values))
 
 
 def _with_knots(

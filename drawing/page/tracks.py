@@ -129,10 +129,15 @@ def page_lines(driven: DrivenProgram, nodes: Nodes) -> list[PageLine]:
     """The programmed path, in the work objects of its moves."""
     return [
         line
-        for part in driven.parts
+        for part in _with_arm(driven)
         for segment in range(len(part.run.path.route.moves))
         for line in [_line(part, segment, nodes)]
     ]
+
+
+def _with_arm(driven: DrivenProgram) -> list[DrivenPart]:
+    """Parts that drive a tool somewhere; a positioner by itself has none."""
+    return [part for part in driven.parts if part.run.path.route.robot.has_arm]
 
 
 def _line(part: DrivenPart, segment: int, nodes: Nodes) -> PageLine:
@@ -172,7 +177,7 @@ def page_waypoints(driven: DrivenProgram, nodes: Nodes) -> PageWaypoints:
     radius: list[float] = []
     carriers: list[int] = []
     moves: list[int] = []
-    for part in driven.parts:
+    for part in _with_arm(driven):
         run = part.run
         route = run.path.route
         reaches = [min(reach) for reach in zone_reaches(run.path)]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...core.arrays import FloatArray, IntArray
+from ...core.arrays import FloatArray
 from ...core.display import counted
 from ...core.driving.driven_program import DrivenProgram
 from ...core.errors import Span
@@ -43,6 +43,8 @@ from .run_page import PageDraft, made_by
 
 MOST_TIMES, EVERY = 300, 0.05
 """Times at which distances between robots are looked at, and s between them at least."""
+_LEAST = 1e-3
+"""s from which on a share of the time is shown."""
 _ROBOTS = (
     PageColumn("robot"),
     PageColumn("moves"),
@@ -146,7 +148,7 @@ class StationPage:
     # Times
 
     def _seen(self, spell: Spell) -> bool:
-        return min(spell.end, self.last) - spell.begin > 1e-3
+        return min(spell.end, self.last) - spell.begin > _LEAST
 
     def _flag(self, track: int, spell: Spell) -> PageFlag:
         source, line = self.draft.sources.place(track, spell.action.span)
@@ -188,7 +190,7 @@ class StationPage:
         made, tracks = self.made, self.draft.tracks
         prover = StationProver(made.station, made.actions)
         names = list(made.station.members)
-        rows = [self._standing(k, grid) for k in range(len(names))]
+        rows = [prover.standing(made.run.schedules[name], grid) for name in names]
         for a, b in combinations(range(len(names)), 2):
             pair = prover.prover(names[a], names[b])
             least = np.array(
@@ -197,6 +199,7 @@ class StationPage:
                         rows[a][0][k : k + 1],
                         rows[b][0][k : k + 1],
                         (rows[a][1][k : k + 1], rows[b][1][k : k + 1]),
+                        at_once=True,
                     )[0]
                     for k in range(len(grid))
                 ]
@@ -206,20 +209,12 @@ class StationPage:
                 curve = PageChannel(f"to {names[other]}", BETWEEN, Quantised(values, 0.1))
                 tracks[own] = replace(tracks[own], channels=[*tracks[own].channels, curve])
 
-    def _standing(self, k: int, grid: FloatArray) -> tuple[FloatArray, IntArray]:
-        """Configurations and moves of a robot at times of the station."""
-        trajectory = self.runs[k].trajectory
-        own = np.clip(self.clocks[k].own(grid), 0.0, trajectory.t[-1])
-        row = np.clip(np.searchsorted(trajectory.t, own, "right") - 1, 0, None)
-        q = np.stack([np.interp(own, trajectory.t, column) for column in trajectory.q.T], -1)
-        return q, trajectory.move[row]
-
     # Figures at the top
 
     def _driven(self, index: int, schedule: Schedule) -> float:
         """s of its own that a robot drives on the page."""
         if np.isfinite(schedule.end):
-            return self.runs[index].duration
+            return self.made.driven(schedule.name)
         return self.last - schedule.begin - self._waited(schedule)
 
     def _waited(self, schedule: Schedule) -> float:
@@ -256,6 +251,9 @@ class StationPage:
             waits = self._waited(schedule)
             if np.isfinite(schedule.end):
                 yield from page_shares(run.program, run.report, index)
+                slower = self.made.driven(schedule.name) - run.duration
+                if slower > _LEAST:
+                    yield PageShare("slower, together with others", slower, index)
             else:
                 driven = self._driven(index, schedule)
                 yield PageShare("motion, waits of its own", driven, index)
@@ -340,14 +338,6 @@ class StationPage:
                 yield replace(table, rows=rows)
         findings = [PageRow((text,), "error") for text in made.findings()]
         findings += [PageRow((str(note),), "warning") for note in made.notes]
-        slowed = [name for name, one in made.run.schedules.items() if len(one.pace.own) > 1]
-        if slowed:
-            said = (
-                f"{', '.join(slowed)}: moves that are made together are drawn here as each robot "
-                "drives them by itself, so that those that are slowed down, and what is behind "
-                "them, come too soon; the station's time and its waits are right"
-            )
-            findings.append(PageRow((said,), "warning"))
         if findings:
             yield PageTable("Notes", [PageColumn("what")], findings)
 
@@ -425,7 +415,7 @@ def _clock(schedule: Schedule, duration: float, last: float) -> OtherClock:
     at = [min(spell.action.time + schedule.lag, duration) for spell in schedule.waits]
     length = [min(spell.end, last) - spell.begin for spell in schedule.waits]
     rests = np.array([0.0, *at]), np.array([schedule.begin, *length])
-    return OtherClock(0.0, *rests, schedule.lag)
+    return OtherClock(0.0, *rests, schedule.lag, schedule.pace)
 
 
 def _waits_for(spell: Spell) -> str:

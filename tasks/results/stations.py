@@ -97,6 +97,10 @@ class DrivenStation:
         """The robot that ends last."""
         return max(self.run.schedules.values(), key=lambda schedule: schedule.end).name
 
+    def driven(self, robot: str) -> float:
+        """s that a robot drives in all, slower than by itself where moves are made together."""
+        return self.run.schedules[robot].pace.at(self.station.members[robot].run.duration)
+
     @property
     def clear(self) -> bool:
         """Whether all robots are proven to keep clear of each other: in time, or in every order
@@ -130,7 +134,7 @@ class DrivenStation:
                 str(len(self.station.members[name].program.moves)),
                 f"{schedule.begin:.3f} s",
                 _seconds(schedule.end),
-                _seconds(self.station.members[name].run.duration),
+                _seconds(self.driven(name)),
                 _seconds(_waited(schedule)),
                 _seconds(self.duration - schedule.end) if np.isfinite(self.duration) else "",
             )
@@ -241,7 +245,7 @@ class DrivenStation:
                     "moves": len(self.station.members[name].program.moves),
                     "begins_s": schedule.begin,
                     "ends_s": schedule.end if np.isfinite(schedule.end) else None,
-                    "drives_s": self.station.members[name].run.duration,
+                    "drives_s": self.driven(name),
                     "waits_s": _waited(schedule) if np.isfinite(_waited(schedule)) else None,
                 }
                 for name, schedule in self.run.schedules.items()

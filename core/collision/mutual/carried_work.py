@@ -46,14 +46,12 @@ class CarriedWork:
         blocks: moves of the worker in a row, by index, and those of the other that are made
             together with them.
         unproven: what is not proven of the worker's motion on these.
-        least: m, the least distance met there, and when, s of the worker's own.
     """
 
     worker: int
     frames: frozenset[int]
     blocks: tuple[Mapping[int, int], ...]
     unproven: tuple[Unproven, ...]
-    least: tuple[float, float]
 
     def conflicts(self) -> Iterator[Conflict]:
         """What is not proven, as of the two robots."""

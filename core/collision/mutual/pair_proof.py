@@ -162,13 +162,20 @@ class PairProver:
                 found.distance[k], found.normal[k] = witness.distance, witness.normal
 
     def nearest(
-        self, q: FloatArray, other: FloatArray, moves: tuple[IntArray, IntArray] | None = None
+        self,
+        q: FloatArray,
+        other: FloatArray,
+        moves: tuple[IntArray, IntArray] | None = None,
+        *,
+        at_once: bool = False,
     ) -> tuple[float, int, int]:
         """The least distance at instants at which both stand somewhere.
 
         Args:
             q, other: (T, N), (T, M), configurations of the one and of the other.
             moves: (T,) each, the moves that they are on, where bodies are only there on some.
+            at_once: whether both are there by one clock, so that what the one turns is where the
+                other works on it; else it is left out.
 
         Returns:
             m, the instant and the row of `pairs`.
@@ -187,9 +194,11 @@ class PairProver:
             bound = measure(hulls, self.pairs + shift, R, p, least[0], found.numbers)
             if moves is not None:
                 gone = ~self._there(moves[0][part], moves[1][part])
-                for handed in self._without:
+                for without in self._without:
+                    if at_once and isinstance(without, CarriedPairs):
+                        continue
                     at, own = (q[part], other[part]), (moves[0][part], moves[1][part])
-                    gone |= handed.skipped_at(at, own, len(self.pairs))
+                    gone |= without.skipped_at(at, own, len(self.pairs))
                 found.distance[gone] = bound[gone] = np.inf
             k, row = np.unravel_index(int(found.distance.argmin()), found.distance.shape)
             if found.distance[k, row] < least[0]:
