@@ -11,7 +11,8 @@ from ..arrays import FloatArray
 from ..dialect import Dialect
 from ..door import given
 from ..errors import FaultCause, MotionError
-from ..motion.path.configurations import ConfigurationFinder, located
+from ..motion.configurations.finder import ConfigurationFinder
+from ..motion.configurations.targets import located
 from ..motion.path.path import Path, Route
 from ..program.move import Move, MoveC, MoveJ
 from ..program.program import Program
@@ -92,7 +93,7 @@ class Placer:
         reached = waypoints(route, len(program.moves))
         moves = [self._carried(move, i, reached[i], losses) for i, move in enumerate(program.moves)]
         q = np.empty((len(moves), self._target.robot.size))
-        before, start = self._finder.rest(), None
+        before, start = self._finder.targets.rest(), None
         stood: list[tuple[FloatArray, FloatArray]] = []
         for anchor in self._anchors(program, moves, reached, route.ends.q[0, 0]):
             again = next((new for old, new in stood if _same(old, anchor.old)), None)
@@ -244,10 +245,10 @@ class Placer:
         """
         robot, target = self._target.robot, anchor.goal.target
         assert isinstance(target, PoseTarget)
-        q = self._finder.external(target.external, before)
+        q = self._finder.targets.external(target.external, before)
         arm = robot.arm_size
         try:
-            flange = self._finder.flange(anchor.goal, target.pose, q)
+            flange = self._finder.targets.flange(anchor.goal, target.pose, q)
             found = robot.inverse(flange, tuple(map(float, q[arm:])))
         except UnreachableError as error:
             message = f"{robot.name} cannot reach the target: {error.message}{_nearer()}"

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import HealthCheck, find, given, settings
 from hypothesis import strategies as st
 
-from flyby.core.motion.path.configurations import ConfigurationFinder
+from flyby.core.motion.configurations.finder import ConfigurationFinder
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
@@ -119,10 +119,10 @@ def test_one_name_is_one_tool(program: Program) -> None:
 def test_targets_in_frames_are_where_the_robot_goes(program: Program) -> None:
     """The inverse through tool and work object gives the configuration that was drawn."""
     finder = ConfigurationFinder(ROBOT, find_vendor("abb").label)
-    q = finder.rest()
+    q = finder.targets.rest()
     for index, move in enumerate(program.moves):
         if isinstance(move.target, JointTarget):
-            q = finder.joints(move.target, q)
+            q = finder.targets.joints(move.target, q)
             continue
         q = finder.choose(move, index, q)
         limits = ROBOT.limits

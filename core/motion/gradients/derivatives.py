@@ -15,9 +15,9 @@ from ...arrays import FloatArray
 from ...errors import InputError
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
+from ..configurations.targets import located
 from ..geometry.corners import ZoneGradient
 from ..model.consumption import SQUARED_TORQUE, Consumption
-from ..path.configurations import located
 from ..path.path import Path
 from ..timing.energy import energy, loads_of, pull_energy
 from ..timing.timing import Timing

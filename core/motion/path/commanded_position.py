@@ -19,7 +19,7 @@ from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
 from ...spatial.pose import Pose
-from .configurations import ConfigurationFinder, Label
+from ..configurations.finder import ConfigurationFinder, Label
 
 
 class Standing:
@@ -50,7 +50,7 @@ class Standing:
         self._pending: list[tuple[int, Move, Span | None]] = []
         self._count = 0
         if start is not None:
-            self._q = self._finder.joints(start, self._finder.rest())
+            self._q = self._finder.targets.joints(start, self._finder.targets.rest())
 
     def moved(self, move: Move, statement: Span | None = None) -> None:
         """The robot has driven to the target of a move.
@@ -81,7 +81,7 @@ class Standing:
                 "where the robot stands is not known before the first move: give a start, or an "
                 "answer"
             )
-        q = self._finder.rest() if self._q is None else self._q
+        q = self._finder.targets.rest() if self._q is None else self._q
         for index, move, statement in self._pending:
             try:
                 q = self._reached(move, index, q)
@@ -101,7 +101,7 @@ class Standing:
     def _reached(self, move: Move, index: int, q: FloatArray) -> FloatArray:
         """The configuration (N,) after a move from ``q``."""
         if isinstance(move.target, JointTarget):
-            return self._finder.joints(move.target, q)
+            return self._finder.targets.joints(move.target, q)
         return self._finder.choose(move, index, q)
 
     def pose(self, tool: Tool, work_object: WorkObject) -> Pose:
@@ -128,7 +128,7 @@ class Standing:
             MotionError: the pose cannot be reached.
         """
         if near is None:
-            near = self.joints() if self.known else self._finder.rest()
+            near = self.joints() if self.known else self._finder.targets.rest()
         return self._finder.choose(move, self._count, near)
 
 

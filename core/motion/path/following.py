@@ -18,13 +18,14 @@ from ...program.move import Move
 from ...robot.kinematics.chain import Chain
 from ...robot.model import Robot
 from ...spatial.rotation import matrix_from_rotation_vector
+from ..configurations.finder import ConfigurationFinder
+from ..configurations.targets import located
 from ..geometry.corners import Corners
 from ..geometry.curves import Samples, TcpCurves
 from ..geometry.layout import Layout
 from ..geometry.segments import LINE_SEGMENT, Ends, Segments, make_segments
 from ..geometry.tcp_curves import make_tcp_curves
 from ..model.blend import PARABOLA
-from .configurations import ConfigurationFinder, located
 from .tcp_samples import CONVERGED, States
 from .tcp_walk import sample_tcp
 from .unreachable import why_stranded
@@ -74,16 +75,17 @@ class PathFollower:
 
     Args:
         robot: the robot.
-        targets: holds what is arrived with against what is programmed.
+        finder: holds what is arrived with against what is programmed.
 
     Attributes:
         turned: indices of the moves on which the tool turns the other way round than rounding has
             it.
     """
 
-    def __init__(self, robot: Robot, targets: ConfigurationFinder) -> None:
+    def __init__(self, robot: Robot, finder: ConfigurationFinder) -> None:
         self._robot = robot
-        self._targets = targets
+        self._finder = finder
+        self._targets = finder.targets
         self.turned: set[int] = set()
 
     def follow(
@@ -149,7 +151,7 @@ class PathFollower:
                     moves[i], i, *why_stranded(self._robot, near, reached - k, length, short)
                 )
             q = segments.ends.q[k, 1] = states.q[end].copy()
-            self._targets.check_arrival(moves[i], i, q)
+            self._finder.check_arrival(moves[i], i, q)
         return q
 
 

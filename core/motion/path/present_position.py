@@ -19,8 +19,8 @@ from ...spatial.pose import Pose
 
 if TYPE_CHECKING:
     from ...arrays import FloatArray
+    from ..configurations.finder import Label
     from .commanded_position import Standing
-    from .configurations import Label
 
 
 NO_ROBOT = "name the robot: its kinematics tell"

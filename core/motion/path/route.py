@@ -24,6 +24,9 @@ from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
+from ..configurations.finder import ConfigurationFinder, Label
+from ..configurations.remarks import Remarks
+from ..configurations.targets import located
 from ..geometry.segments import (
     ARC_SEGMENT,
     JOINT_SEGMENT,
@@ -32,7 +35,6 @@ from ..geometry.segments import (
     make_segments,
 )
 from ..model.rules import ArcTurn, LineTurn
-from .configurations import ConfigurationFinder, Label, located
 from .following import Nominal, PathFollower
 from .no_move import no_move
 from .path import Route
@@ -86,8 +88,9 @@ class RouteFinder:
         self._arcs = arcs
         self._line_turn = line_turn
         self._arc_turn = arc_turn
-        self._targets = ConfigurationFinder(robot, label, nearest)
-        self._follower = PathFollower(robot, self._targets)
+        self._finder = ConfigurationFinder(robot, label, nearest)
+        self._targets = self._finder.targets
+        self._follower = PathFollower(robot, self._finder)
         self._chains: dict[tuple[Tool, WorkObject], Chain] = {}
         self._last: tuple[Tool, WorkObject, Chain] | None = None
         self._known: tuple[Program, Route] | None = None
@@ -124,11 +127,7 @@ class RouteFinder:
                 check_near(move, i, before)
                 before = move
         notes: list[Note] = []
-        self._targets.assumed = assumed_places(program)
-        self._targets.departures.clear()
-        self._targets.tolerated.clear()
-        self._targets.ambiguous.clear()
-        self._targets.uneven.clear()
+        self._finder.remarks = Remarks(assumed_places(program))
         q = self._start(program, start, notes)
         legs = RouteLegs(0 if notes else None)
         for stage in self._stages(moves, skipped):
@@ -147,7 +146,7 @@ class RouteFinder:
         first = program.moves[0]
         if isinstance(first.target, JointTarget):
             return self._targets.joints(first.target, rest)
-        return self._targets.choose(first, 0, rest)
+        return self._finder.choose(first, 0, rest)
 
     def starts(self, program: Program) -> tuple[JointTarget, ...]:
         """Where the robot may stand at the first target of a program that states no start.
@@ -160,8 +159,8 @@ class RouteFinder:
         first = program.moves[0]
         if program.start is not None or isinstance(first.target, JointTarget):
             return ()
-        self._targets.assumed = assumed_places(program)
-        return tuple(map(self._as_target, self._targets.starts(first, 0)))
+        self._finder.remarks = Remarks(assumed_places(program))
+        return tuple(map(self._as_target, self._finder.starts(first, 0)))
 
     def standing_at(self, move: Move, near: JointTarget | None) -> JointTarget:
         """A robot at the target of a move, however it came there.
@@ -175,8 +174,8 @@ class RouteFinder:
         """
         if move.open:
             raise _left_open(move, 0)
-        finder = self._targets
-        q = finder.rest() if near is None else finder.joints(near, finder.rest())
+        finder, targets = self._finder, self._targets
+        q = targets.rest() if near is None else targets.joints(near, targets.rest())
         if not isinstance(move.target, JointTarget):
             plain = replace(move, target=replace(move.target, configuration=None))
             try:
@@ -187,7 +186,7 @@ class RouteFinder:
                 finder.check_posture(move, found, q)
             return self._as_target(found)
         try:
-            return self._as_target(finder.joints(move.target, q))
+            return self._as_target(targets.joints(move.target, q))
         except InputError as error:
             raise MotionError(str(error)) from error
 
@@ -278,7 +277,7 @@ class RouteFinder:
                     pose(stage.chain, known[k + 1], rotation[k + 1], position[k + 1])
                 else:
                     if kind[k] != JOINT_SEGMENT and move.target.arm_angle is not None:
-                        known[k + 1] = self._targets.led(move, i, known[k])
+                        known[k + 1] = self._finder.led(move, i, known[k])
                         legs.led.append(i)
                     else:
                         known[k + 1] = self._targets.external(move.target.external, known[k])
@@ -314,7 +313,7 @@ class RouteFinder:
         """Where a joint move from q ends."""
         if isinstance(move.target, JointTarget):
             return self._targets.joints(move.target, q)
-        return self._targets.choose(move, i, q)
+        return self._finder.choose(move, i, q)
 
     def _route(
         self,
@@ -330,9 +329,8 @@ class RouteFinder:
         passed = legs.passed(keep, waypoints, notes)
         notes += half_turns(segments, keep, legs.moves, self._follower.turned)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
-        notes += arm_angle_notes(self._robot, program, legs.led, self._targets.uneven)
-        notes += self._targets.departure_notes(program.moves)
-        notes += self._targets.tolerance_notes()
+        notes += arm_angle_notes(self._robot, program, legs.led, self._finder.remarks.uneven)
+        notes += self._finder.remarks.notes(program.moves)
         which = np.flatnonzero(keep)
         speeds = [program.moves[legs.moves[k]].speed for k in which]
         changes = [a != b for a, b in pairwise(speeds)]

@@ -15,8 +15,8 @@ from ...errors import Note
 from ...program.move import Move, MoveC
 from ...program.target import JointTarget, PoseTarget
 from ...spatial.rotation import arc_angle, cross_length
+from ..configurations.targets import located
 from ..geometry.segments import LINE_SEGMENT, Segments
-from .configurations import located
 
 if TYPE_CHECKING:
     from ...dialect import ArcRules
@@ -144,7 +144,7 @@ def arm_angle_notes(
 
     Args:
         led: indices of the moves of the TCP to one.
-        uneven: see `ConfigurationFinder`.
+        uneven: see `Remarks`.
     """
     notes = [Note(_THIRD_EVENLY + _apart(program, uneven), move) for move in led[:1]]
     through = (

@@ -11,7 +11,6 @@ from ...arrays import FloatArray
 from ...robot.kinematics.chain_kernels import poses
 from ...robot.model import Robot
 from ...robot.seven_axes.arm_angle import settle, wrapped
-from ...spatial.pose import Pose
 from ...spatial.rotation import matrix_from_rotation_vector, rotation_vector
 
 _THIRD = 2
@@ -32,14 +31,14 @@ class Followed(NamedTuple):
     apart: float
 
 
-def followed(robot: Robot, flange: Pose, wanted: float, q: FloatArray) -> Followed | None:
+def followed(robot: Robot, flange: FloatArray, wanted: float, q: FloatArray) -> Followed | None:
     """The configuration that an arm reaches from another one without a jump.
 
     The flange goes straight, and the arm angle the shorter way round.
 
     Args:
         robot: with an arm angle.
-        flange: in the world.
+        flange: (4, 4), in the world.
         wanted: rad, the arm angle.
         q: (N,), where the arm stands; external axes as they are at the end.
 
@@ -49,10 +48,10 @@ def followed(robot: Robot, flange: Pose, wanted: float, q: FloatArray) -> Follow
     angle = robot.measured_arm_angle
     before = robot.arm_angle(q)
     assert angle is not None and before is not None
-    size, matrix = robot.arm_size, flange.matrix()
+    size = robot.arm_size
     (base_R,), (base_p,) = poses(robot.base_chain, q[None])
     (first_R,), (first_p,) = poses(robot.arm_chain, q[None, :size].copy())
-    R, p = base_R.T @ matrix[:3, :3], base_R.T @ (matrix[:3, 3] - base_p)
+    R, p = base_R.T @ flange[:3, :3], base_R.T @ (flange[:3, 3] - base_p)
     turn, change = rotation_vector(first_R.T @ R), wrapped(wanted - before)
     turned = max(float(np.linalg.norm(turn)), abs(change))
     length = float(np.linalg.norm(p - first_p))
