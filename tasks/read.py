@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -12,8 +13,8 @@ from ..core.door import spelt
 from ..core.errors import FlybyError, InputError, Note, OptionError, ParseError
 from ..core.program.entry_point import ALL
 from ..core.source.text.files import refuse_no_text
-from .backup.finding import find_backup
-from .backup.opening import holds_entry, read_task, setup_in, task_of, told_of_setup
+from .backup.finding import find_backup, no_backup
+from .backup.opening import begins, read_task, setup_in, task_of, told_of_setup
 from .backup.surrounding import backup_round, surrounding_note
 from .catalogue import registry
 from .fitting import arms_that_fit
@@ -204,16 +205,16 @@ def _fitting(source: str | Path, options: SourceOptions) -> list[str]:
 
 
 def surrounding(source: str | Path) -> Note | None:
-    """What to do with a program file that lies in a backup."""
-    if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
+    """What to do with a program, or a folder with programs, that lies in a backup."""
+    if (isinstance(source, str) and "\n" in source) or not Path(source).exists():
         return None
     return surrounding_note(Path(source), registry())
 
 
 def robot_around(source: str | Path) -> BackupRobot | None:
-    """The robot of the backup that a program file lies in: that of its task, else the only one;
-    None where none or several may be it."""
-    if (isinstance(source, str) and "\n" in source) or not Path(source).is_file():
+    """The robot of the backup that a program, or a folder with programs, lies in: that of its task,
+    else the only one; None where none or several may be it."""
+    if (isinstance(source, str) and "\n" in source) or not Path(source).exists():
         return None
     found = backup_round(Path(source), registry())
     if found is None:
@@ -221,9 +222,13 @@ def robot_around(source: str | Path) -> BackupRobot | None:
     with suppress(FlybyError, OSError):
         backup = find_backup(found[1], registry())
         if backup is not None:
-            name = Path(source).absolute().relative_to(found[1]).as_posix()
-            own = [task.robot for task in backup.tasks if name in task.files]
-            index = own[0] if len(own) == 1 else 0 if len(backup.robots) == 1 else None
+            place = Path(os.path.abspath(source))
+            own = {
+                task.robot
+                for task in backup.tasks
+                if any((found[1] / name).is_relative_to(place) for name in task.files)
+            }
+            index = own.pop() if len(own) == 1 else 0 if len(backup.robots) == 1 else None
             return None if index is None else backup.robots[index]
     return None
 
@@ -238,6 +243,8 @@ def _check_it_is_a_program(source: str | Path) -> None:
     if path.is_file():
         registry().readers_of(path)
         refuse_no_text(path)
+    elif not _programs_of(path):
+        raise no_backup(path, registry())
 
 
 def from_ready_posture(
@@ -309,8 +316,9 @@ def backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
     """The backup that a source is; None if it is a program.
 
     Beside a robot that is named, a program file is read by itself, and so is a folder with programs
-    in it that is no backup itself, unless an entry says which of several; if none is, the backup
-    may say which. A cell says what stands around: the arm itself is the backup's.
+    in it that is no backup itself, unless one of several has the entry or is the only one that a
+    controller would start; if none is, the backup may say which. A cell says what stands around:
+    the arm itself is the backup's.
     """
     if isinstance(source, str) and ("\n" in source or not source):
         return None
@@ -323,9 +331,9 @@ def backup_in(source: str | Path, options: SourceOptions) -> Backup | None:
     if path.is_file():
         return None if options.robot is not None else find_backup(path, registry())
     found = find_backup(path, registry(), marked=True)
-    if found is None and options.entry not in (None, ALL) and len(_programs_of(path)) > 1:
+    if found is None and options.entry != ALL and len(_programs_of(path)) > 1:
         several = find_backup(path, registry())
-        if several is not None and holds_entry(several, options.entry):
+        if several is not None and begins(several, options.entry):
             found = several if _all_parsed(path, several.vendor, options) else None
     return found if found is not None and found.root == path else None
 

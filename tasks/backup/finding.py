@@ -27,6 +27,8 @@ _NAMED = 4
 """Programs that a note names at most."""
 _TEXTS = frozenset({".txt"})
 """What programs may end with, and nearly all files that do so are none."""
+_ARCHIVE = ".zip"
+_OTHER_ARCHIVES = (".7z", ".rar", ".tar", ".tar.gz", ".tgz", ".tar.xz")
 _NOT_ENTERED = frozenset({".git", ".svn", ".hg", "__pycache__", "node_modules", ".venv"})
 
 
@@ -71,12 +73,22 @@ def find_backup(path: str | Path, registry: Registry, marked: bool = False) -> B
     found = _nearest(source, _found(names, registry))
     if found is None and not marked and (unpacked is not None or source.is_dir()):
         found = _programs_alone(names, registry)
+    if found is None and source.is_dir() and not marked and (packed := _packed(folder, names)):
+        opened = find_backup(packed, registry)
+        note = Note(f"{source}: the backup is that in {packed.relative_to(folder)}")
+        return opened and replace(opened, notes=(note, *opened.notes))
     if found is None:
         _refuse_unreadable(source, names, registry)
         return None
     notes = (*notes, *_outside(source, found, names, registry))
     backup = found.opener.open(source, folder / found.root, registry.find_robot)
     return replace(backup, notes=(*notes, *backup.notes), unpacked=unpacked)
+
+
+def _packed(folder: Path, names: Sequence[str]) -> Path | None:
+    """The only archive below a folder."""
+    archives = [folder / name for name in names if name.casefold().endswith(_ARCHIVE)]
+    return archives[0] if len(archives) == 1 and is_archive(archives[0]) else None
 
 
 def _refuse_unreadable(source: Path, names: Sequence[str], registry: Registry) -> None:
@@ -94,8 +106,18 @@ def no_backup(path: str | Path, registry: Registry) -> InputError:
     """That there is none, to be raised."""
     kinds = ", ".join(sorted(v.name for v in registry.vendors.values() if v.backups))
     what = "folder" if Path(path).is_dir() else "file"
-    packed = [name for name in names_below(Path(path)) if name.lower().endswith(".zip")]
+    names = names_below(Path(path))
+    of = {name for vendors in _programs(names, registry).values() for name in vendors}
+    if len(of) > 1:
+        return InputError(
+            f"{path}: programs of {' and '.join(sorted(of))} are in this {what}, and no backup: "
+            "name a folder with those of one, or a program"
+        )
+    packed = [name for name in names if name.casefold().endswith(_ARCHIVE)]
     which = f": {', '.join(packed[:_NAMED])}, perhaps" if packed else ""
+    others = [name for name in names if name.casefold().endswith(_OTHER_ARCHIVES)]
+    if others:
+        which = f"; archives other than zip have to be unpacked: {', '.join(others[:_NAMED])}"
     return InputError(
         f"{path}: no backup is in this {what}: nothing in it marks one of a controller of "
         f"{kinds}; name the folder or archive that the controller has written{which}"

@@ -66,7 +66,8 @@ def task_of(backup: Backup, name: str | None, entry: str | None = None) -> Task:
         if len(found) == 1:
             return found[0]
     if not moving:
-        raise InputError(f"{backup.source}: no task of it moves a robot{_noted(backup)}")
+        what = "no task of it moves a robot" if backup.tasks else "it holds no program"
+        raise InputError(f"{backup.source}: {what}{_noted(backup)}")
     names = ", ".join(task.name for task in moving)
     if entry not in (None, ALL) and not having:
         every = tuple(point for task in moving for point in _entry_points(task))
@@ -79,9 +80,13 @@ def task_of(backup: Backup, name: str | None, entry: str | None = None) -> Task:
     )
 
 
-def holds_entry(backup: Backup, entry: str) -> bool:
-    """Whether a task of a backup has a routine that is asked for."""
-    return any(_entry(task, entry) is not None for task in backup.tasks)
+def begins(backup: Backup, entry: str | None) -> bool:
+    """Whether a task of a backup has a routine that is asked for, or where none is, there is but
+    one that a controller would start."""
+    if entry is not None:
+        return any(_entry(task, entry) is not None for task in backup.tasks)
+    moving = [task for task in backup.tasks if task.robot is not None]
+    return len(moving) == 1 and moving[0].entry is not None
 
 
 def _entry(task: Task, asked: str | None) -> BackupEntry | None:

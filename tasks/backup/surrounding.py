@@ -1,4 +1,4 @@
-"""The backup that a program file lies in, which knows robot and data."""
+"""The backup that a program, or a folder with programs, lies in, which knows robot and data."""
 
 from __future__ import annotations
 
@@ -24,15 +24,18 @@ _MOST_NEAR = 4
 what is further away is seldom of the same robot."""
 
 
-def backup_round(file: Path, registry: Registry) -> tuple[str, Path] | None:
-    """The vendor of the backup that a file lies in, and the folder where that begins.
+def backup_round(path: Path, registry: Registry) -> tuple[str, Path] | None:
+    """The vendor of the backup that a program lies in, and the folder where that begins.
 
     Args:
-        file: a program that there is.
+        path: a program that there is, or a folder: then a backup that lies in it does not count.
         registry: whose vendors may have written it.
     """
-    whole = Path(os.path.abspath(file))
-    above = list(whole.parents)[:MOST_ABOVE]
+    given_path = Path(os.path.abspath(path))
+    whole = given_path if path.is_file() else _first_program(given_path, registry)
+    if whole is None:
+        return None
+    above = [one for one in whole.parents if one in given_path.parents][:MOST_ABOVE]
     for vendor in registry.vendors.values():
         if vendor.backups is None or whole.suffix.lower() not in vendor.suffixes:
             continue
@@ -44,6 +47,16 @@ def backup_round(file: Path, registry: Registry) -> tuple[str, Path] | None:
             root = marked[-1] if marked else next(near, None)
             if root is not None and opener.root_in(names_below(root)) == "":
                 return vendor.name, root
+    return None
+
+
+def _first_program(folder: Path, registry: Registry) -> Path | None:
+    """A program below a folder."""
+    suffixes = {suffix for vendor in registry.vendors.values() for suffix in vendor.suffixes}
+    with suppress(OSError, InputError):
+        for name in names_below(folder):
+            if Path(name).suffix.lower() in suffixes:
+                return folder / name
     return None
 
 
@@ -69,15 +82,15 @@ def _inside(file: Path, folder: Path) -> str:
     return file.relative_to(folder).as_posix()
 
 
-def surrounding_note(file: Path, registry: Registry) -> Note | None:
-    """What to do with a file that lies in a backup; None where it lies in none."""
-    found = backup_round(file, registry)
+def surrounding_note(path: Path, registry: Registry) -> Note | None:
+    """What to do with what lies in a backup; None where it lies in none."""
+    found = backup_round(path, registry)
     if found is None:
         return None
     vendor, root = found
     near = os.path.relpath(root)
     shown = str(root) if near.startswith("..") else near
     return Note(
-        f"{file} lies in a backup of {vendor}, {shown}: {called('emulate', shown)} with "
+        f"{path} lies in a backup of {vendor}, {shown}: {called('emulate', shown)} with "
         f"{given('entry', 'ROUTINE')} takes robot, tools and data from it too"
     )

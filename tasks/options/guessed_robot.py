@@ -57,10 +57,10 @@ def with_robot(
     backup = backup_in(source, options)
     if backup is not None and _says_its_robot(backup, options):
         return options, ()
-    own = robot_around(source) if backup is None else None
+    own = robot_around(source)
     if own is not None and own.robot is not None:
         said = f"{own.robot.name} is taken, which is the robot of the backup around {source}"
-        return replace(options, robot=own.robot.name), (Note(said),)
+        return replace(options, robot=own.robot), (Note(said),)
     if own is not None and own.written:
         return options, ()  # it is another one than flyby knows: what reads it says so
     found = _guessed(source, options)

@@ -30,8 +30,8 @@ def at(x: float, y: float, z: float, tool: str = "tool0") -> str:
 
 def taken(file: Path) -> tuple[str | None, str]:
     options, notes = with_robot(file, SourceOptions())
-    assert options.robot is None or isinstance(options.robot, str)
-    return options.robot, " ".join(note.message for note in notes)
+    name = options.robot if isinstance(options.robot, str) else getattr(options.robot, "name", None)
+    return name, " ".join(note.message for note in notes)
 
 
 def test_an_arm_that_drives_the_program_is_taken_and_said(tmp_path: Path) -> None:
@@ -192,6 +192,10 @@ def test_a_program_in_a_backup_is_for_the_robot_of_that(tmp_path: Path) -> None:
     (main,) = backup.rglob("MainModule.mod")
     robot, said = taken(main)
     assert robot == "abb/irb4600-40-255" and "the robot of the backup around" in said
+    for folder in (main.parent, main.parent.parent, backup / "RAPID"):
+        options, (note,) = with_robot(folder, SourceOptions())
+        assert options.robot == flyby.open_backup(backup).robots[0].robot
+        assert f"the robot of the backup around {folder}" in note.message
     assert taken(backup) == (None, "")  # it says so itself
     strange = Station(products=("English", "IRB 9990-77/9.9"), moc=one_robot(kind="9990_9.9_77"))
     other = strange.write(tmp_path / "Backup_2")

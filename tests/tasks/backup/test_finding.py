@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import zipfile
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -158,6 +159,21 @@ def test_programs_outside_a_backup_are_named(tmp_path: Path) -> None:
     assert opened(tmp_path / "deep").notes == ()
 
 
-def test_an_archive_in_a_folder_is_named(tmp_path: Path) -> None:
-    _made(tmp_path, "in/b.zip", "README.md")
-    assert str(no_backup(tmp_path, ONE)).endswith("has written: in/b.zip, perhaps")
+def test_the_only_archive_in_a_folder_is_opened(tmp_path: Path) -> None:
+    whole = _made(tmp_path / "whole", "cell/mark.txt", "cell/a.mod")
+    folder = _made(tmp_path / "usb", "README.md")
+    shutil.make_archive(str(folder / "in" / "b"), "zip", whole)
+    backup = opened(folder)
+    assert (backup.root.name, backup.source) == ("cell", folder / "in" / "b.zip")
+    assert "the backup is that in in/b.zip" in backup.notes[0].message
+    shutil.copy(folder / "in" / "b.zip", folder / "in" / "c.zip")
+    assert find_backup(folder, ONE) is None
+    assert str(no_backup(folder, ONE)).endswith("has written: in/b.zip, in/c.zip, perhaps")
+    _made(folder, "mark.txt")
+    assert opened(folder).root == folder
+
+
+def test_other_archives_are_named(tmp_path: Path) -> None:
+    _made(tmp_path, "cell.7z", "old.tar.gz")
+    said = str(no_backup(tmp_path, ONE))
+    assert said.endswith("archives other than zip have to be unpacked: cell.7z, old.tar.gz")

@@ -38,8 +38,9 @@ class Contents:
         return self._folded.get(name.replace("\\", "/").strip("/").casefold())
 
     def task(self, folder: str) -> str:
-        """Where a task's folder is: below ``RAPID``, or where that was not copied, the root."""
-        return folder if self._without_rapid else f"RAPID/{folder}"
+        """Where a task's folder is: below ``RAPID``, or where that was not copied, the root, which
+        the folder of a task without a name is as well."""
+        return folder if self._without_rapid or not folder else f"RAPID/{folder}"
 
     @cached_property
     def _without_rapid(self) -> bool:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Iterable, Sequence
+
+from ..language import SUFFIXES
 
 CONFIGURATIONS = ("sys", "moc", "eio", "proc", "mmc", "sio")
 """Topics of system parameters, each a file of its own: ``SYSPAR/MOC.cfg``."""
@@ -34,9 +37,17 @@ def root_in(names: Sequence[str]) -> str | None:
 
 
 def modules_in(names: Sequence[str]) -> str | None:
-    """The folder that holds a part of a backup, copied without what marks it: ``TASKn`` folders, or
-    ``PROGMOD`` and ``SYSMOD``; see `BackupOpener.programs_in`. The outermost, the first by name."""
-    return _outermost(_found(_MODULES, names))
+    """The folder that holds a part of a backup, copied without what marks it; see
+    `BackupOpener.programs_in`.
+
+    That of ``TASKn`` folders, or of ``PROGMOD`` and ``SYSMOD``, the outermost, the first by name;
+    else what holds all modules.
+    """
+    part = _outermost(_found(_MODULES, names))
+    modules = [name for name in names if name.casefold().endswith(SUFFIXES)]
+    if part is not None or not modules:
+        return part
+    return posixpath.commonpath([posixpath.dirname(name) for name in modules])
 
 
 def _outermost(roots: Iterable[str]) -> str | None:

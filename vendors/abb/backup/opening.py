@@ -47,11 +47,11 @@ def _opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Bac
     info = parse_backinfo(text or "")
     sys, moc, eio = (_parameters(contents, name, notes) for name in ("SYS", "MOC", "EIO"))
     tasks = loaded_tasks(contents, info, sys, ModuleFiles(contents), notes)
-    if not (tasks or sys or moc or eio):
+    if not (any(task.files for task in tasks) or sys or moc or eio or info.tasks):
         raise InputError(
             f"{source}: nothing of this backup can be read: {_first(notes) or 'it is empty'}"
         )
-    if tasks and not sys.file:
+    if tasks and not sys.file and any(task.listed.folder for task in tasks):
         notes.add(
             "SYS.cfg is not in the backup: which tasks move an arm is taken from their routines, "
             "and they are taken to begin in PROC main"

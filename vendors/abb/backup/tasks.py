@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ....core.backup.backup import BackupEntry, Task
 from ....core.backup.contents import BackupNotes, listed
@@ -18,6 +18,7 @@ from ..run.files import MODULES
 from .backinfo import BackInfo, ListedTask
 from .cfg import Parameters, Record
 from .contents import Contents
+from .loose import loose_tasks
 from .modules import (
     ModuleFile,
     ModuleFiles,
@@ -30,6 +31,7 @@ _FOLDER = re.compile(r"(?:(?:rapid/)?(task\d+)/)?(?:progmod|sysmod)/[^/]+", re.I
 _SHARED = "TASK0"
 """Where IRC5 and OmniCore keep modules that all tasks share; S4C+ kept its only task there."""
 _MAIN = "main"
+_HOME = "HOME"
 _FAULTS = 4
 """Files that cannot be parsed and have a note each."""
 
@@ -71,7 +73,8 @@ def loaded_tasks(
     """The tasks in the order of the list."""
     stated = list(info.tasks)
     named = _named_folders(contents, sys) if not stated else []
-    given = stated or named
+    loose = _loose(contents, sys, modules) if not stated and not named else []
+    given = stated or named or loose
     shared = [task for task in given if _is_shared(task, given, sys)]
     common = [file for task in shared for file in _files(contents, task, modules, notes)]
     found = []
@@ -90,6 +93,22 @@ def loaded_tasks(
             "BACKINFO/backinfo.txt, the list of loaded modules, is not in the backup: all modules "
             "of each task's folder are taken as loaded"
         )
+    elif loose:
+        notes.add(
+            f"no task's folder (RAPID/TASK1) is at hand: what lies together is taken as loaded "
+            f"together, {counted(loose, 'task')} that each begin in PROC main"
+        )
+    return found
+
+
+def _loose(contents: Contents, sys: Parameters, modules: ModuleFiles) -> list[ListedTask]:
+    """Tasks of folders of any name; beside system parameters what lies in HOME is not loaded."""
+    home = f"{_HOME.casefold()}/" if sys else None
+    names = [n for n in contents.names if home is None or not n.casefold().startswith(home)]
+    found = loose_tasks(contents, names, modules)
+    records = [one for one in sys.section("CAB_TASKS") if one.flag("motiontask")]
+    if len(found) == len(records) == 1:
+        return [replace(found[0], name=records[0].name)]
     return found
 
 
@@ -129,7 +148,7 @@ def _files(
                 notes.add(f"the module is left out: {file.fault}", file.name, file.line)
         else:
             readable.append(file)
-    place = contents.task(task.folder)
+    place = contents.task(task.folder) or task.name
     if faults > _FAULTS:
         notes.add(f"{place}: {faults - _FAULTS} more modules cannot be parsed and are left out")
     if missing.absent:

@@ -78,7 +78,7 @@ def beside(files: Files, main: str, names: Iterable[str]) -> dict[str, SourceFil
     for name, file in files.items():
         members = {_base(m) for m in listed(file)} if _is_list(name) else set()
         if own in members:
-            return {n: f for n, f in rest.items() if _base(n) in members or _is_system(n)}
+            return {n: f for n, f in rest.items() if _base(n) in members or is_system(n)}
     return rest
 
 
@@ -138,7 +138,8 @@ def _is_list(name: str) -> bool:
     return name.lower().endswith(PROGRAM)
 
 
-def _is_system(name: str) -> bool:
+def is_system(name: str) -> bool:
+    """Whether a file is a system module's, by its name."""
     return name.lower().endswith((".sys", ".sysx"))
 
 

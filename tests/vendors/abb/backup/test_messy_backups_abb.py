@@ -64,8 +64,11 @@ def test_roots_are_among_the_folders(names: list[str]) -> None:
 
 
 def test_a_folder_without_a_backup_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "main.mod").write_text(MAIN)
+    (tmp_path / "main.txt").write_text(MAIN)
     with pytest.raises(InputError, match="no backup of an ABB controller"):
+        opened(tmp_path)
+    (tmp_path / "go.mod").write_text("module example.com/cell\n\ngo 1.21\n")
+    with pytest.raises(InputError, match=r"nothing of this backup can be read: go\.mod"):
         opened(tmp_path)
 
 
@@ -166,10 +169,6 @@ def test_a_folder_copied_out_of_a_backup(tmp_path: Path, copied: str, name: str,
     (task,) = opened(root).tasks
     assert (task.name, task.robot, task.main, task.entry) == (name, 0, main, "Main")
     assert len(task.files) == 2
-
-
-def test_modules_in_no_folder_of_a_task_are_no_backup() -> None:
-    assert OPENER.programs_in(["main.mod", "PROG/main.mod", "SYSMOD"]) is None
 
 
 def test_names_that_are_declared_twice(tmp_path: Path) -> None:

@@ -400,7 +400,7 @@ def test_a_folder_of_scripts_is_one_of_programs(tmp_path: Path) -> None:
     assert len(flyby.read(tmp_path, robot="ur/ur5e", task="b").moves) == 2
     # Beside programs of another vendor scripts mark nothing.
     (tmp_path / "main.mod").write_text("MODULE m\nENDMODULE\n")
-    with pytest.raises(InputError, match="no backup is in this folder"):
+    with pytest.raises(InputError, match="programs of abb and ur are in this folder"):
         opened(tmp_path)
 
 
