@@ -27,7 +27,8 @@ _NAMED = 4
 """Programs that a note names at most."""
 _TEXTS = frozenset({".txt"})
 """What programs may end with, and nearly all files that do so are none."""
-_ARCHIVE = ".zip"
+_ARCHIVE = (".zip", ".rspag")
+"""Pack & Go files of RobotStudio are zip files."""
 _OTHER_ARCHIVES = (".7z", ".rar", ".tar", ".tar.gz", ".tgz", ".tar.xz")
 _NOT_ENTERED = frozenset({".git", ".svn", ".hg", "__pycache__", "node_modules", ".venv"})
 
@@ -105,8 +106,9 @@ def _refuse_unreadable(source: Path, names: Sequence[str], registry: Registry) -
 def no_backup(path: str | Path, registry: Registry) -> InputError:
     """That there is none, to be raised."""
     kinds = ", ".join(sorted(v.name for v in registry.vendors.values() if v.backups))
-    what = "folder" if Path(path).is_dir() else "file"
-    names = names_below(Path(path))
+    folder = Path(path).is_dir()
+    what = "folder" if folder else "file"
+    names = names_below(Path(path)) if folder else [Path(path).name]
     of = {name for vendors in _programs(names, registry).values() for name in vendors}
     if len(of) > 1:
         return InputError(

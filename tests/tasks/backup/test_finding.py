@@ -177,3 +177,5 @@ def test_other_archives_are_named(tmp_path: Path) -> None:
     _made(tmp_path, "cell.7z", "old.tar.gz")
     said = str(no_backup(tmp_path, ONE))
     assert said.endswith("archives other than zip have to be unpacked: cell.7z, old.tar.gz")
+    said = str(no_backup(tmp_path / "cell.7z", ONE))
+    assert "no backup is in this file" in said and said.endswith("have to be unpacked: cell.7z")

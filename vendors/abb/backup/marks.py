@@ -36,6 +36,11 @@ def root_in(names: Sequence[str]) -> str | None:
     return None
 
 
+def nested_in(names: Sequence[str]) -> list[str]:
+    """The folders of further backups below one that begins at the root."""
+    return sorted(filter(None, _found(_BACKINFO, names)), key=str.casefold)
+
+
 def modules_in(names: Sequence[str]) -> str | None:
     """The folder that holds a part of a backup, copied without what marks it; see
     `BackupOpener.programs_in`.

@@ -15,7 +15,7 @@ from .backinfo import BackInfo, arms_in, parse_backinfo
 from .cfg import Parameters, parse_parameters
 from .contents import Contents
 from .declared import Declared
-from .marks import modules_in, root_in
+from .marks import modules_in, nested_in, root_in
 from .mechanics import mechanics_of
 from .modules import ModuleFiles
 from .planner import motion_figures
@@ -42,6 +42,11 @@ def _opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Bac
         raise InputError(
             f"{source}: no backup of an ABB controller: neither BACKINFO/backinfo.txt nor "
             "RAPID/TASKn nor PROGMOD nor SYSPAR/MOC.cfg is in it"
+        )
+    nested = nested_in(contents.names)
+    if nested:
+        notes.add(
+            f"further backups in it are left out, to be named by themselves: {listed(nested)}"
         )
     text = contents.text("BACKINFO/backinfo.txt")
     info = parse_backinfo(text or "")

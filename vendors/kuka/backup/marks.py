@@ -25,6 +25,7 @@ _VKRC = frozenset({"folgen", "ups", "makros"})
 programs: ``Folge1.src``, ``UP99.src``, ``Makro0.src``. Source: headers of such programs,
 robot-forum.com, thread 34305."""
 _IIQKA = re.compile("iiqka|iiqworks", re.IGNORECASE)
+_PROJECT = ".wvs"
 _ROOMS = frozenset({"program", "system", "mada", "tp"}) | _VKRC
 _SOURCES = (".src", ".sub", ".dat")
 _PROGRAMS = ".src"
@@ -107,11 +108,20 @@ def _loose(names: Sequence[str], robot: str, folders: Sequence[str]) -> tuple[st
     )
 
 
-def of_vkrc(names: Sequence[str], layout: Layout) -> bool:
-    """Whether an archive is one of a VKRC."""
+def vkrc_programs(names: Sequence[str], layout: Layout) -> frozenset[str]:
+    """The programs of a VKRC, in folders that no other controller has."""
     inside = f"{layout.robot}/" if layout.robot else ""
-    rooms = (name[len(inside) :].split("/") for name in names if name.startswith(inside))
-    return any(len(room) > 1 and room[0].casefold() in _VKRC for room in rooms)
+    found = []
+    for name in names:
+        room, inner, _ = name[len(inside) :].partition("/")
+        if name.startswith(inside) and inner and room.casefold() in _VKRC:
+            found.append(name)
+    return frozenset(found)
+
+
+def of_workvisual(names: Sequence[str]) -> str | None:
+    """The first project of WorkVisual, a form of its own; None for none."""
+    return next((name for name in names if name.casefold().endswith(_PROJECT)), None)
 
 
 def of_iiqka(names: Sequence[str]) -> str | None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .marks import of_iiqka, programs_in, root_in
+from .marks import of_iiqka, of_workvisual, programs_in, root_in
 
 if TYPE_CHECKING:
     from ....core.backup.backup import Backup
@@ -25,8 +25,13 @@ class Opener:
         return programs_in(names)
 
     def unreadable_in(self, names: Sequence[str]) -> str | None:
-        """See `marks.of_iiqka`."""
-        named = of_iiqka(names)
+        """See `marks.of_iiqka` and `marks.of_workvisual`."""
+        named, project = of_iiqka(names), of_workvisual(names)
+        if named is None and project is not None:
+            return (
+                f"{project} is a project of WorkVisual, in a form that it alone reads: save the "
+                "controller's archive, or a folder with KRC/R1, from WorkVisual or at the pendant"
+            )
         if named is None:
             return None
         return (

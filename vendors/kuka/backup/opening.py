@@ -7,7 +7,6 @@ from pathlib import Path, PurePosixPath
 
 from ....core.backup.backup import Backup
 from ....core.backup.contents import BackupNotes, listed
-from ....core.door import spelt
 from ....core.errors import InputError
 from ....core.robot.model import Robot
 from .arms import lists_of, robots_of, tables_in
@@ -15,7 +14,7 @@ from .contents import Contents
 from .declared import Declared, declared_in, machines_of
 from .figures import motion_figures
 from .identity import identity_of
-from .marks import CONFIG, MACHINE, of_vkrc, programs_in, root_in
+from .marks import CONFIG, MACHINE, programs_in, root_in, vkrc_programs
 from .signals import signals_in
 from .tasks import source_files, tasks_of
 
@@ -32,12 +31,12 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
             f"program, and no {MACHINE}, is in it"
         )
     layout = contents.layout
-    if of_vkrc(contents.names, layout):
-        raise InputError(
-            f"{source}: an archive of a VKRC (VW System Software, programs in Folgen, UPs and "
-            "Makros): its inline forms set speeds and stops by routines of Volkswagen's, which are "
-            "not read. Export the programs for a KSS controller from the offline system; the arm "
-            f"alone may be named by its file, {MACHINE} in R1/Mada ({spelt('robot')})"
+    volkswagens = vkrc_programs(contents.names, layout)
+    if volkswagens:
+        notes.add(
+            "an archive of a VKRC (VW System Software): its programs in Folgen, UPs and Makros are "
+            "left out, as their inline forms set speeds and stops by routines of Volkswagen's, "
+            "which are not read. Export them for a KSS controller from the offline system"
         )
     if layout.copies:
         notes.add(f"{listed(layout.copies)} left out: {layout.robot or 'R1'} is read")
@@ -47,13 +46,15 @@ def opened(source: Path, root: Path, find_robot: Callable[[str], Robot]) -> Back
         )
     lists = lists_of(contents)
     identity = identity_of(contents, lists.machine)
-    files = source_files(contents)
+    files = [name for name in source_files(contents) if name not in volkswagens]
     config_file = next((f for f in files if PurePosixPath(f).name.casefold() == CONFIG), None)
     config = contents.data(config_file)
     machines = machines_of(config, notes)
     robots = robots_of(contents, lists, machines, identity.robot, find_robot)
     arm = robots[0].robot
     tasks = tasks_of(contents, files)
+    if volkswagens and lists.machine is None and config is None:
+        raise InputError(f"{source}: {notes.all()[0]}")
     declared = Declared()
     if config is not None:
         declared = declared_in(config, machines, tables_in(lists), arm, notes)

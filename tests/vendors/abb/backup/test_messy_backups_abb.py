@@ -72,6 +72,17 @@ def test_a_folder_without_a_backup_is_refused(tmp_path: Path) -> None:
         opened(tmp_path)
 
 
+def test_older_backups_inside_are_said(tmp_path: Path) -> None:
+    root = Station().write(tmp_path / "new")
+    assert not any("further backups" in one for one in texts(opened(root)))
+    old = Station(products=("IRB 120-3/0.6",), moc=one_robot(kind="120_0.58_3"))
+    shutil.copytree(old.write(tmp_path / "old"), root / "HOME" / "BACKUP_1")
+    backup = opened(root)
+    assert backup.robots[0].robot == opened(tmp_path / "new").robots[0].robot
+    assert "left out, to be named by themselves: HOME/BACKUP_1" in " ".join(texts(backup))
+    assert opened(root / "HOME" / "BACKUP_1").robots[0].written == "ROB1_120_0.58_3"
+
+
 def test_a_backup_of_which_nothing_can_be_read_is_refused(tmp_path: Path) -> None:
     (tmp_path / "SYSPAR").mkdir()
     (tmp_path / "SYSPAR" / "MOC.cfg").write_bytes(bytes(range(256)))

@@ -389,13 +389,23 @@ def test_what_is_none(tmp_path) -> None:
 
 
 @pytest.mark.parametrize("room", ["Folgen/Folge1.src", "UPs/UP99.src", "Makros/Makro0.src"])
-def test_an_archive_of_a_vkrc_is_refused_by_its_name(tmp_path, room: str) -> None:
-    files = archive() | {f"KRC/R1/{room}": "DEF FOLGE1( )\nEND\n"}
-    with pytest.raises(InputError, match=r"a VKRC \(VW System Software.* for a KSS controller"):
-        opened(tmp_path, files)
-    alone = {f"KRC/R1/{room}": "DEF FOLGE1( )\nEND\n"}
+def test_an_archive_of_a_vkrc_has_its_arm_and_tools(tmp_path, room: str) -> None:
+    """Programs in Volkswagen's folders are not driven, whatever else is there."""
+    own = {f"KRC/R1/{room}": "DEF FOLGE1( )\nPTP {A1 10}\nEND\n"}
+    whole = opened(tmp_path / "whole", archive())
+    made = opened(tmp_path / "vw", archive() | own)
+    assert (made.robots, made.tools, made.frames) == (whole.robots, whole.tools, whole.frames)
+    assert all(room not in file for task in made.tasks for file in task.files)
+    assert "a VKRC (VW System Software)" in said(made) and "for a KSS controller" in said(made)
     with pytest.raises(InputError, match="a VKRC"):
-        opened(tmp_path / "alone", alone)
+        opened(tmp_path / "alone", own)
+
+
+def test_a_project_of_workvisual_is_refused_by_its_cause(tmp_path) -> None:
+    (tmp_path / "Cell.WVS").write_bytes(bytes(range(9)))
+    for path in (tmp_path, tmp_path / "Cell.WVS"):
+        with pytest.raises(InputError, match=r"Cell\.WVS is a project of WorkVisual.*archive"):
+            flyby.open_backup(path)
 
 
 @pytest.mark.parametrize("name", ["iiQKA_backup_2024/project.json", "export.zip/iiQWorks.meta"])
