@@ -160,12 +160,16 @@ class DrivenStation:
             (
                 " and ".join(pair.robots),
                 f"{1e3 * pair.least:.1f} mm at {pair.least_at:.2f} s",
-                _verdict(pair.in_time, least=pair.least),
+                self._in_time_said(pair),
                 _verdict(pair.any_time, "needs interlocks for {}"),
                 "" if pair.interlocked is None else _verdict(pair.interlocked, "open for {}"),
             )
             for pair in self.clearances
         ]
+
+    def _in_time_said(self, pair: PairClearance) -> str:
+        said = _verdict(pair.in_time, least=pair.least)
+        return f"{said}, ± {1e3 * self.jitter:g} ms" if pair.in_time.proven else said
 
     def conflict_said(self, pair: PairClearance, conflict: Conflict) -> str:
         """A conflict in a sentence, with both program lines, and when: at one time of the station,

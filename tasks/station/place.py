@@ -18,7 +18,7 @@ from ..results.cell_course import CellCourse
 from ..setup import CellOptions, start_of, with_setup
 from .changing import feasibility_of
 from .opening import is_station_file, open_station
-from .station import JITTER
+from .station import StationOptions
 
 if TYPE_CHECKING:
     from ...core.cell.cell import Cell
@@ -115,7 +115,7 @@ def station_place_with(source: str | Path, options: PlaceOptions) -> PlacedRobot
             f"{spelt('order')} is found for one program by itself: beside other robots tasks stand "
             "where signals have them"
         )
-    feasibility = feasibility_of(opened, JITTER, options.say)
+    feasibility = feasibility_of(opened, StationOptions().jitter, options.say)
     beside = partial(feasibility.placed, options.of)
     made = _placed(members[options.of].program, replace(options, of=None), beside)
     return replace(made, notes=(*opened.notes, *opened.unknown, *made.notes))

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from ...core.station.passing import Passed
     from ..results.stations import DrivenStation
 
-JITTER = 50e-3
+JITTER = 50.0
+"""ms, as it is typed."""
 """s."""
 _UNSURE = (
     "the jitter says at many waits behind zones whether the robot stops there or passes: in time "

@@ -13,6 +13,7 @@ import flyby
 from flyby.core.errors import FlybyError, InputError
 from flyby.core.station.clearances import StationProver
 from flyby.drawing.station import draw_station
+from flyby.tasks.station.changing import StationChangeOptions
 
 from .stations import HOMES, UNUSED, Write
 
@@ -229,6 +230,13 @@ def test_an_interlock_is_proven_or_the_pair_of_moves_is_named(write: Write) -> N
     made = station(write(open_ones, gap=650.0), no_proof=False)
     (pair,) = made.clearances
     assert not pair.safe and not made.clear
+
+
+def test_robots_are_50_ms_early_or_late_unless_it_is_said() -> None:
+    made = flyby.station("examples/two_robots/station.toml")
+    assert made.jitter == StationChangeOptions().jitter == pytest.approx(0.05)
+    assert made.as_json()["jitter_ms"] == pytest.approx(50.0)
+    assert made.pair_rows()[0][2] == "10 mm proven, ± 50 ms"
 
 
 def test_a_release_that_comes_late_is_found_with_what_it_costs() -> None:
