@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 JITTER = 50.0
 """ms, as it is typed."""
-"""s."""
 _UNSURE = (
     "the jitter says at many waits behind zones whether the robot stops there or passes: in time "
     "no more is proven than at any time"
