@@ -34,7 +34,6 @@ from .kinematics.arm_geometry import Recognised, recognise
 from .kinematics.chain import Chain
 from .kinematics.chain_derivatives import hessians
 from .kinematics.chain_kernels import jacobians, poses
-from .kinematics.chain_kernels import pose as write_pose
 from .seven_axes.arm_angle import ArmAngle, arm_angle_at, arm_angle_of
 from .shape import LinkShape, TouchingLinks
 
@@ -394,12 +393,29 @@ class Robot:
                 f"{len(external)} values were given"
             )
         matrix = pose.matrix() if isinstance(pose, Pose) else np.asarray(pose, dtype=float)
-        base = np.empty((4, 3))
-        values = np.array([0.0] * self.arm_size + list(external))
-        write_pose(self.base_chain, values, base[:3], base[3])
-        R = base[:3].T @ matrix[:3, :3]
-        p = base[:3].T @ (matrix[:3, 3] - base[3])
+        (R,), (p,) = self._in_base(matrix[None], np.array([external], dtype=float))
         return self._inverse.at(R, p, arm_angle)
+
+    def inverse_at_each(self, flanges: FloatArray, external: FloatArray) -> list[FloatArray | None]:
+        """What `inverse` finds at each of many poses, configurations (K, n), at once.
+
+        Args:
+            flanges: (M, 4, 4), in the world.
+            external: (M, …), values of all external axes.
+
+        Returns:
+            None where `inverse` has to be asked.
+        """
+        return self._inverse.at_each(*self._in_base(flanges, external))
+
+    def _in_base(self, flanges: FloatArray, external: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Rotations (M, 3, 3) and positions (M, 3) m of flanges (M, 4, 4) in the base's frame."""
+        values = np.zeros((len(flanges), self.size))
+        values[:, self.arm_size :] = external
+        R, p = poses(self.base_chain, values)
+        back = R.swapaxes(1, 2)
+        apart = flanges[:, :3, 3] - p
+        return back @ flanges[:, :3, :3], (back @ apart[..., None])[..., 0]
 
     def turns(self, q: ArrayLike) -> FloatArray:
         """Arm configurations (T, n) within limits, whole turns away from q (n,), nearest first."""

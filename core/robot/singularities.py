@@ -54,10 +54,10 @@ def nearest_singularity(robot: Robot, q: ArrayLike) -> Singularity | None:
         return None
     arm = np.ascontiguousarray(np.asarray(q, dtype=float)[: robot.arm_size])
     R, p = poses(robot.arm_chain, arm[None])
-    solutions, measures = np.empty((8, 6)), np.empty((8, 4))
-    SOLVERS[known.family](known.geometry, R[0], p[0], solutions, measures)
-    apart = solutions - known.angles(arm)
+    solutions, measures = np.empty((1, 8, 6)), np.empty((1, 8, 4))
+    SOLVERS[known.family](known.geometry, R, p, solutions, measures)
+    apart = solutions[0] - known.angles(arm)
     apart -= FULL_TURN * np.round(apart / FULL_TURN)
-    shoulder, *sines = np.abs(measures[np.argmin(np.abs(apart).max(axis=1)), :3])
+    shoulder, *sines = np.abs(measures[0, np.argmin(np.abs(apart).max(axis=1)), :3])
     upper = np.linalg.norm(known.geometry.elbow - known.geometry.shoulder)
     return _KINDS[int(np.argmin([shoulder / upper, *sines]))]

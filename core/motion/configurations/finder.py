@@ -56,18 +56,26 @@ class ConfigurationFinder:
         self.targets = Targets(robot)
         self.remarks = Remarks()
 
-    def choose(self, move: Move, index: int, before: FloatArray) -> FloatArray:
+    def choose(
+        self, move: Move, index: int, before: FloatArray, known: FloatArray | None = None
+    ) -> FloatArray:
         """The configuration of a joint move's pose target.
 
         Of the solutions with the programmed configuration, the one nearest to ``before``. A
         seven-axis arm keeps its third axis where the target states no arm angle.
+
+        Args:
+            move, index: the move.
+            before: (N,), where the robot stands.
+            known: the arm's solutions there, see `Targets.solutions`; None if they are not known.
 
         Raises:
             MotionError: the pose is out of reach (with the third axis kept), or contradicts the
                 programmed configuration.
         """
         wanted = move.target.configuration if isinstance(move.target, PoseTarget) else None
-        return self._pick(move, index, wanted, self.targets.options(move, index, before), before)
+        options = self.targets.options(move, index, before, known)
+        return self._pick(move, index, wanted, options, before)
 
     def led(self, move: Move, index: int, before: FloatArray) -> FloatArray:
         """Where (N,) a move of the TCP ends whose target states an arm angle: the arm goes on in

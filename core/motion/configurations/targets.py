@@ -98,59 +98,78 @@ class Targets:
         q[arm : arm + len(values)] = values
         return q
 
+    def solutions(
+        self, tool: Tool, work_object: WorkObject, targets: FloatArray, q: FloatArray
+    ) -> list[FloatArray | None]:
+        """The arm's configurations (K, n) at each of many targets, for `options`.
+
+        Args:
+            tool, work_object, targets, q: as in `flanges`, of all external axes.
+
+        Returns:
+            None where targets have to be looked at one by one.
+        """
+        if self.redundant is not None:
+            return [None] * len(targets)
+        flanges = self.flanges(tool, work_object, targets, q)
+        return self.robot.inverse_at_each(flanges, q[:, self.robot.arm_size :])
+
     def options(
-        self, move: Move, index: int, before: FloatArray, *, all_turns: bool = False
+        self,
+        move: Move,
+        index: int,
+        before: FloatArray,
+        known: FloatArray | None = None,
+        *,
+        all_turns: bool = False,
     ) -> FloatArray:
         """Configurations (K, N) at a move's pose target: `choose` tells which and what it raises.
 
         Args:
+            known: what `solutions` found there.
             all_turns: those whole turns away from the nearest, too.
         """
         target = move.target
         assert isinstance(target, PoseTarget)
-        q = self.external(target.external, before)
-        arm = self.robot.arm_size
-        flange = self.flange(move, target.pose, q)
-        external = tuple(map(float, q[arm:]))
-        try:
-            found = [s.q for s in self.robot.inverse(flange, external, target.arm_angle)]
-        except UnreachableError as error:
-            why = f"target cannot be reached: {error}"
-            raise located(move, index, why, error.cause) from error
-        except InputError as error:
-            raise located(move, index, str(error)) from error
-        third = self.redundant
-        if third is not None and target.arm_angle is None:
-            turned = np.array(self._with_third_kept(found, flange, q, third))
-            if not len(turned):
-                name, value = self.robot.axis_names[third], np.degrees(q[third])
-                raise located(
-                    move,
-                    index,
-                    f"target cannot be reached with the third axis, {name}, kept at "
-                    f"{value:.4g}°: turn it first by a joint target",
-                    FaultCause.REACH,
-                )
+        q, arm = self.external(target.external, before), self.robot.arm_size
+        found = self._solved(move, index, q) if known is None else known
+        if self.redundant is not None and target.arm_angle is None:
+            turned = self._with_third_kept(move, index, found, q)
         elif target.configuration is None and not all_turns:
-            turned = self._nearest_turns(np.array(found), before[:arm])
+            turned = self._nearest_turns(found, before[:arm])
         else:
             turned = np.concatenate([self.robot.turns(solution) for solution in found])
         options = np.empty((len(turned), len(q)))
         options[:, :arm], options[:, arm:] = turned, q[arm:]
         return options
 
+    def _solved(self, move: Move, index: int, q: FloatArray) -> FloatArray:
+        """The arm's configurations (K, n) at a move's pose target; external axes as in q (N,)."""
+        target = move.target
+        assert isinstance(target, PoseTarget)
+        flange, external = self.flange(move, target.pose, q), q[self.robot.arm_size :]
+        try:
+            found = self.robot.inverse(flange, tuple(map(float, external)), target.arm_angle)
+        except UnreachableError as error:
+            why = f"target cannot be reached: {error}"
+            raise located(move, index, why, error.cause) from error
+        except InputError as error:
+            raise located(move, index, str(error)) from error
+        return np.array([solution.q for solution in found])
+
     def _with_third_kept(
-        self, samples: Sequence[FloatArray], flange: FloatArray, q: FloatArray, third: int
-    ) -> list[FloatArray]:
-        """Configurations (n,) of a seven-axis arm at a pose, within limits, third axis as in q.
+        self, move: Move, index: int, samples: FloatArray, q: FloatArray
+    ) -> FloatArray:
+        """Configurations (T, n) of a seven-axis arm at a move's target, third axis as in q.
 
         Args:
-            samples: some of the arm's configurations at the pose.
-            flange: (4, 4), in the world.
+            move, index: the move.
+            samples: (K, n), some of the arm's configurations there.
             q: (N,), the arm's present configuration and the target's external axes.
-            third: index of the third axis.
         """
-        arm = self.robot.arm_size
+        arm, third = self.robot.arm_size, self.redundant
+        assert third is not None and isinstance(move.target, PoseTarget)
+        flange = self.flange(move, move.target.pose, q)
         R, p = np.ascontiguousarray(flange[:3, :3]), np.ascontiguousarray(flange[:3, 3])
         kept: list[FloatArray] = []
         for sample in (q[:arm], *samples):
@@ -161,7 +180,16 @@ class Targets:
             if converged:
                 turns = self.robot.turns(guess[:arm])
                 kept += [t for t in turns if abs(t[third] - q[third]) < _SAME]
-        return kept
+        if not kept:
+            name, value = self.robot.axis_names[third], np.degrees(q[third])
+            raise located(
+                move,
+                index,
+                f"target cannot be reached with the third axis, {name}, kept at {value:.4g}°: "
+                "turn it first by a joint target",
+                FaultCause.REACH,
+            )
+        return np.array(kept)
 
     def _nearest_turns(self, q: FloatArray, before: FloatArray) -> FloatArray:
         """Of the arm's configurations whole turns away from each of q (K, n), the one nearest to

@@ -15,11 +15,10 @@ import numpy as np
 from ...arrays import FloatArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
 from ...program.assumed_places import assumed_places
-from ...program.move import Move, MoveC, MoveJ, MoveL
+from ...program.move import Move, MoveC, MoveJ
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
 from ...program.tool import WORLD, Tool, WorkObject
-from ...program.zone import FINE
 from ...robot.kinematics.chain import Chain
 from ...robot.kinematics.chain_kernels import pose
 from ...robot.model import Robot
@@ -36,11 +35,12 @@ from ..geometry.segments import (
 )
 from ..model.rules import ArcTurn, LineTurn
 from .following import Nominal, PathFollower
+from .kept_route import with_other_numbers
 from .no_move import no_move
 from .path import Route
 from .programmed_speeds import programmed
 from .route_checks import arm_angle_notes, check_near, half_turns, is_arc
-from .route_legs import MoveEnd, RouteLegs, move_ends_of, rows_of
+from .route_legs import NOWHERE, MoveEnd, RouteLegs, move_ends_of, rows_of
 
 if TYPE_CHECKING:
     from ...dialect import ArcRules
@@ -49,9 +49,6 @@ _STRAIGHT = (
     "the three points of the arc lie on a line: it is driven as the line. Some controllers stop "
     "there: use a linear move"
 )
-_NOWHERE = 1e-6
-"""Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
-and a move of nothing would be a stop more."""
 
 
 @dataclass
@@ -115,7 +112,7 @@ class RouteFinder:
             raise no_move(program)
         plain = start is None and not skipped
         if plain and self._known is not None:
-            again = _with_other_numbers(*self._known, program)
+            again = with_other_numbers(*self._known, program)
             if again is not None:
                 self._known = program, again
                 return again
@@ -235,13 +232,14 @@ class RouteFinder:
     ) -> FloatArray:
         """Resolve the moves of a stage from configuration q; returns where it ends."""
         ends = self._ends(moves, stage, q, legs)
+        solutions = self._solutions(moves, stage, ends)
         nominal: Nominal | None = None
         k, count = 0, len(stage.moves)
         while k < count:
             if ends.kind[k] == JOINT_SEGMENT:
                 i = stage.moves[k]
                 ends.q[k, 0] = q
-                q = ends.q[k, 1] = self._joint_end(moves[i], i, q)
+                q = ends.q[k, 1] = self._joint_end(moves[i], i, q, solutions.get(k))
                 k += 1
                 continue
             nominal = Nominal(stage.chain, stage.moves, ends) if nominal is None else nominal
@@ -309,11 +307,30 @@ class RouteFinder:
             **programmed([moves[i].speed for i in stage.moves]),
         )
 
-    def _joint_end(self, move: Move, i: int, q: FloatArray) -> FloatArray:
-        """Where a joint move from q ends."""
+    def _solutions(
+        self, moves: Sequence[Move], stage: MoveGroup, ends: Ends
+    ) -> dict[int, FloatArray | None]:
+        """What `Targets.solutions` finds at the poses that the stage's joint moves end at."""
+        targets = [moves[i].target for i in stage.moves]
+        which = [
+            k
+            for k in np.flatnonzero(ends.kind == JOINT_SEGMENT).tolist()
+            if isinstance(target := targets[k], PoseTarget) and target.arm_angle is None
+        ]
+        if not which:
+            return {}
+        at = np.tile(np.eye(4), (len(which), 1, 1))
+        at[:, :3, :3], at[:, :3, 3] = ends.rotation[which, 1], ends.position[which, 1]
+        q = np.zeros((len(which), self._robot.size))
+        q[:, self._targets.prescribed] = ends.prescribed[which, 1]
+        found = self._targets.solutions(stage.tool, stage.work_object, at, q)
+        return dict(zip(which, found, strict=True))
+
+    def _joint_end(self, move: Move, i: int, q: FloatArray, known: FloatArray | None) -> FloatArray:
+        """Where a joint move from q ends, of which the arm's solutions may be known."""
         if isinstance(move.target, JointTarget):
             return self._targets.joints(move.target, q)
-        return self._finder.choose(move, i, q)
+        return self._finder.choose(move, i, q, known)
 
     def _route(
         self,
@@ -325,7 +342,7 @@ class RouteFinder:
         """Join the stages and drop moves that go nowhere; their stops and waits stay."""
         ends = legs.joined()
         segments = make_segments(ends)
-        keep = segments.scale > _NOWHERE
+        keep = segments.scale > NOWHERE
         passed = legs.passed(keep, waypoints, notes)
         notes += half_turns(segments, keep, legs.moves, self._follower.turned)
         notes += [Note(_STRAIGHT, move) for move in legs.straight]
@@ -347,80 +364,6 @@ class RouteFinder:
             self._targets.prescribed,
             tuple(replace(n, span=n.span or _span(program, n.move)) for n in notes),
         )
-
-
-def _with_other_numbers(before: Program, route: Route, program: Program) -> Route | None:
-    """The route of a program that differs from another one in joint values and zones alone.
-
-    Args:
-        before, route: the other program and its route.
-        program: the program.
-
-    Returns:
-        None where more has changed, or may have.
-    """
-    statements = len(before.statements) == len(program.statements)
-    if not statements or before.start is not program.start or route.notes or route.left_out:
-        return None
-    if len(route.moves) != len(before.moves):
-        return None
-    kind, zones, changed = route.ends.kind.tolist(), list(route.zones), []
-    k = -1
-    for old, new in zip(before.statements, program.statements, strict=True):
-        k += isinstance(old, MoveJ | MoveL | MoveC)
-        if old is new:
-            continue
-        if not (isinstance(old, MoveJ) and isinstance(new, MoveJ) and _alike(old, new)):
-            return None
-        if kind[k] != JOINT_SEGMENT or kind[min(k + 1, len(kind) - 1)] != JOINT_SEGMENT:
-            return None
-        target, external = new.target, route.robot.size - route.robot.arm_size
-        if not isinstance(target, JointTarget) or len(target.external) != external:
-            return None
-        if new.zone is not old.zone and k < len(zones):
-            # At a stop something else may make it one.
-            if zones[k] is not old.zone or old.zone == FINE:
-                return None
-            zones[k] = new.zone
-        changed.append((k, target))
-    ends = _moved(route, changed)
-    return None if ends is None else replace(route, ends=ends, zones=tuple(zones))
-
-
-def _alike(old: MoveJ, new: MoveJ) -> bool:
-    """Whether both are joint moves to as many joint values, and differ in nothing but these and
-    their zones."""
-    one, two = old.target, new.target
-    if not (isinstance(one, JointTarget) and isinstance(two, JointTarget)):
-        return False
-    if len(one.joints) != len(two.joints) or len(one.external) != len(two.external):
-        return False
-    same = old.tool is new.tool and old.work_object is new.work_object and old.speed is new.speed
-    return same and not (new.open or new.unsettled)
-
-
-def _moved(route: Route, changed: Sequence[tuple[int, JointTarget]]) -> Ends | None:
-    """The ends with other joint values where segments end; None where one goes nowhere then."""
-    ends, count = route.ends, len(route.moves)
-    q, prescribed = ends.q.copy(), ends.prescribed.copy()
-    position, rotation = ends.position.copy(), ends.rotation.copy()
-    chains = route.chains
-    for k, target in changed:
-        here, after = (k, 1), (k + 1, 0)
-        q[here] = (*target.joints, *target.external)
-        prescribed[here] = q[k, 1, route.prescribed]
-        pose(chains[k], q[here], rotation[here], position[here])
-        if k + 1 < count:
-            q[after], prescribed[after] = q[here], prescribed[here]
-            if chains[k + 1] is chains[k]:
-                rotation[after], position[after] = rotation[here], position[here]
-            else:
-                pose(chains[k + 1], q[after], rotation[after], position[after])
-    moved = [k for k, _ in changed]
-    near = [k for k in {*moved, *(k + 1 for k in moved)} if k < count]
-    if (np.linalg.norm(q[near, 1] - q[near, 0], axis=1) <= _NOWHERE).any():
-        return None
-    return replace(ends, q=q, prescribed=prescribed, position=position, rotation=rotation)
 
 
 def _left_open(move: Move, index: int) -> MotionError:

@@ -16,6 +16,9 @@ from ...program.zone import FINE, Zone
 from ...robot.kinematics.chain import Chain
 from ..geometry.segments import Ends
 
+NOWHERE = 1e-6
+"""Scale (m or rad) below which a move goes nowhere: targets are written with about that precision,
+and a move of nothing would be a stop more."""
 START = -1
 """The index of the move that would end where the program begins."""
 

@@ -88,6 +88,30 @@ class ArmInverse:
             self._found[key] = self._with_arm_angle(self._angle, arm_angle, R, p)
         return self._found[key]
 
+    def at_each(self, R: FloatArray, p: FloatArray) -> list[FloatArray | None]:
+        """The same configurations (K, n), in the same order, at each of M poses at once.
+
+        Args:
+            R, p: (M, 3, 3), (M, 3) m, the poses.
+
+        Returns:
+            None where `at` has to look closer: where there is no closed form, or not for the arm as
+            it was calibrated; at singularities, out of reach, and beyond ranges.
+        """
+        known = self._known
+        if known is None or known.error > EXACT:
+            return [None] * len(p)
+        q, measures = _solutions(known, R, p)
+        missing = measures[..., 3]
+        unclear = (missing > SLACK) | (np.abs(measures[..., :3]).min(axis=2) < SINGULAR)
+        unclear &= missing <= UNSURE
+        turned, inside = self.ranges.settled(q.reshape(-1, q.shape[2]))
+        beyond = self.ranges.beyond_coupled(turned).reshape(missing.shape)
+        fits = inside.reshape(missing.shape) & (missing <= SLACK)
+        sure = fits.any(axis=1) & ~(unclear | (beyond & fits)).any(axis=1)
+        rows = zip(turned.reshape(q.shape), fits, sure, strict=True)
+        return [found[own] if clear else None for found, own, clear in rows]
+
     def _any_angle(self, R: FloatArray, p: FloatArray) -> tuple[InverseSolution, ...]:
         if self._known is None:
             found, least = self._searched(R, p)
@@ -148,9 +172,7 @@ def _signed(degrees: int) -> int:
 def _closed_form(
     chain: Chain, known: Recognised, R: FloatArray, p: FloatArray
 ) -> tuple[list[Candidate], float]:
-    q, measures = np.empty((8, 6)), np.empty((8, 4))
-    least = float(SOLVERS[known.family](known.geometry, R, p, q, measures))
-    q = np.ascontiguousarray(known.values(q))
+    (q,), (measures,) = _solutions(known, R[None], p[None])
     candidates = []
     for branch, at, (*sizes, missing) in zip(_BRANCHES, q, measures.tolist(), strict=True):
         if missing > max(UNSURE, known.error):
@@ -164,7 +186,14 @@ def _closed_form(
             singular = frozenset([name for name, size in names if abs(size) < SINGULAR])
         doubtful = bool(singular) or not ideal
         candidates.append(Candidate(at, branch, singular, doubtful))
-    return candidates, least
+    return candidates, float(measures[:, 3].min())
+
+
+def _solutions(known: Recognised, R: FloatArray, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values (M, 8, 6) and measures (M, 8, 4) of the closed form at M poses; see `SOLVERS`."""
+    q, measures = np.empty((len(p), 8, 6)), np.empty((len(p), 8, 4))
+    SOLVERS[known.family](known.geometry, R, p, q, measures)
+    return np.ascontiguousarray(known.values(q)), measures
 
 
 def _out_of_reach(known: Recognised | None, least: float) -> str:

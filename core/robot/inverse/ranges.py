@@ -78,6 +78,12 @@ class Ranges:
         fits: NDArray[np.bool_] = np.all(inside, axis=1)
         return np.minimum(np.maximum(turned, self.lower), self.upper), fits
 
+    def beyond_coupled(self, q: FloatArray) -> NDArray[np.bool_]:
+        """(C,), which configurations (C, n) are beyond a coupled range."""
+        if not self._coupled:
+            return np.zeros(len(q), dtype=np.bool_)
+        return np.asarray(self._beyond(q).any(axis=1))
+
     def turns(self, q: FloatArray) -> FloatArray:
         """All configurations (T, n) within limits, full turns away from q (n,), nearest first."""
         turns = [_turns(joint, float(x)) for joint, x in zip(self._joints, q, strict=True)]

@@ -14,7 +14,7 @@ import numpy as np
 from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .closed_form import Z, target_rotation, wrapped, wrist_target
-from .lean import lean
+from .lean import inner, lean
 from .spherical_wrist import solve_wrist
 from .vectors import compose, rotation_about
 
@@ -22,19 +22,25 @@ from .vectors import compose, rotation_about
 @lean
 def solve_scara(
     arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
-) -> float:
-    """All solutions for a flange pose in the base's frame, out of reach those nearest to it.
+) -> None:
+    """All solutions for flange poses in the base's frame, out of reach those nearest to them.
 
     Args:
         arm: the arm's numbers.
-        R, p: (3, 3), (3,) m, the flange's pose.
-        q: (8, 6) rad, m at the slide, written; row number = 2 elbow + wrist, the others are none.
-        measures: (8, 4), written: 1, sine at the elbow, sine between axes 4 and 6, and the distance
-            (m) by which the wrist's centre is out of reach.
-
-    Returns:
-        The smallest of those distances.
+        R, p: (M, 3, 3), (M, 3) m, the flange's poses.
+        q: (M, 8, 6) rad, m at the slide, written; row number = 2 elbow + wrist, the others are
+            none.
+        measures: (M, 8, 4), written: 1, sine at the elbow, sine between axes 4 and 6, and the
+            distance (m) by which the wrist's centre is out of reach.
     """
+    for m in range(p.shape[0]):
+        _solve(arm, R[m], p[m], q[m], measures[m])
+
+
+@inner
+def _solve(
+    arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
+) -> None:
     x, y, z = wrist_target(arm, R, p)
     rotation = target_rotation(arm, R)
     upper = math.hypot(arm.elbow[0], arm.elbow[1])
@@ -64,6 +70,5 @@ def solve_scara(
             measures[n + flip, 2] = -apart if flip == 1 else apart
             measures[n + flip, 3] = missing
     for n in range(4, 8):
-        q[n] = 0.0
-        measures[n] = np.inf
-    return missing
+        q[n, :] = 0.0
+        measures[n, :] = np.inf

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .closed_form import (
@@ -32,22 +30,26 @@ from .vectors import Rotation, compose, cross, dot, rotation_about, turn
 @lean
 def solve_spherical_wrist(
     arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
-) -> float:
-    """All solutions for a flange pose in the base's frame, out of reach those nearest to it.
+) -> None:
+    """All solutions for flange poses in the base's frame, out of reach those nearest to them.
 
     Args:
         arm: the arm's numbers.
-        R, p: (3, 3), (3,) m, the flange's pose.
-        q: (8, 6) rad, written; row number = 4 shoulder + 2 elbow + wrist.
-        measures: (8, 4), written: x of the wrist's centre in the arm's plane (m), sine at the
+        R, p: (M, 3, 3), (M, 3) m, the flange's poses.
+        q: (M, 8, 6) rad, written; row number = 4 shoulder + 2 elbow + wrist.
+        measures: (M, 8, 4), written: x of the wrist's centre in the arm's plane (m), sine at the
             elbow, sine between axes 4 and 6, and the distance (m) by which it is out of reach.
-
-    Returns:
-        The smallest of those distances.
     """
+    for m in range(p.shape[0]):
+        _solve(arm, R[m], p[m], q[m], measures[m])
+
+
+@inner
+def _solve(
+    arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
+) -> None:
     centre = wrist_target(arm, R, p)
     rotation = target_rotation(arm, R)
-    least = np.inf
     for shoulder in range(2):
         first, x, aside = solve_shoulder(arm.lateral, centre, shoulder == 1)
         turned = compose(rotation_about(Z, -first), rotation)
@@ -63,8 +65,6 @@ def solve_spherical_wrist(
                 measures[n + flip, 0], measures[n + flip, 1] = x, bend
                 measures[n + flip, 2] = -sine if flip == 1 else sine
                 measures[n + flip, 3] = missing
-            least = min(least, missing)
-    return least
 
 
 @inner

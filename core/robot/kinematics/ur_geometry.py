@@ -8,9 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numba import njit
-
 from ...arrays import FloatArray
 from .arm_geometry import ArmGeometry
 from .closed_form import (
@@ -28,29 +25,33 @@ from .closed_form import (
     wrapped,
     wrist_target,
 )
-from .lean import inner
+from .lean import inner, lean
 from .vectors import Rotation, Vector, add, compose, cross, dot, load, rotation_about, turn
 
 
-@njit(cache=True, error_model="numpy")
+@lean
 def solve_parallel_axes(
     arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
-) -> float:
-    """All solutions for a flange pose in the base's frame, out of reach those nearest to it.
+) -> None:
+    """All solutions for flange poses in the base's frame, out of reach those nearest to them.
 
     Args:
         arm: the arm's numbers.
-        R, p: (3, 3), (3,) m, the flange's pose.
-        q: (8, 6) rad, written; row number = 4 shoulder + 2 elbow + wrist.
-        measures: (8, 4), written: x of the wrist's centre in the arm's plane (m), sine at the
+        R, p: (M, 3, 3), (M, 3) m, the flange's poses.
+        q: (M, 8, 6) rad, written; row number = 4 shoulder + 2 elbow + wrist.
+        measures: (M, 8, 4), written: x of the wrist's centre in the arm's plane (m), sine at the
             elbow, sine between axes 4 and 6, and the distance (m) by which it is out of reach.
-
-    Returns:
-        The smallest of those distances.
     """
+    for m in range(p.shape[0]):
+        _solve(arm, R[m], p[m], q[m], measures[m])
+
+
+@inner
+def _solve(
+    arm: ArmGeometry, R: FloatArray, p: FloatArray, q: FloatArray, measures: FloatArray
+) -> None:
     centre = wrist_target(arm, R, p)
     rotation = target_rotation(arm, R)
-    least = np.inf
     for shoulder in range(2):
         first, x, aside = solve_shoulder(arm.lateral, centre, shoulder == 1)
         turned = compose(rotation_about(Z, -first), rotation)
@@ -73,8 +74,6 @@ def solve_parallel_axes(
                 q[n, 4], q[n, 5] = fifth, sixth
                 measures[n, 0], measures[n, 1], measures[n, 2] = x, bend, sine
                 measures[n, 3] = max(aside, beyond)
-                least = min(least, measures[n, 3])
-    return least
 
 
 @inner

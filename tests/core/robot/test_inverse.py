@@ -79,6 +79,28 @@ def test_singular_poses_are_solved_too(arms, name, q) -> None:
 
 
 @pytest.mark.parametrize("name", CLOSED)
+@SETTINGS
+@given(poses=st.lists(st.tuples(ANGLES | QUARTERS, st.sampled_from([0.0, 3.0])), max_size=5))
+def test_many_poses_at_once_have_the_solutions_of_each(arms, name, poses) -> None:
+    """Where it is left open the pose is singular or out of reach, or joints are at their ends."""
+    robot = arms[name]
+    targets = np.array([matrix_at(robot, q) for q, _ in poses]).reshape(-1, 4, 4)
+    targets[:, 0, 3] += [farther for _, farther in poses]
+    found = robot.inverse_at_each(targets, np.empty((len(poses), 0)))
+    assert len(found) == len(poses)
+    for target, many in zip(targets, found, strict=True):
+        try:
+            one = robot.inverse(target)
+        except UnreachableError:
+            assert many is None
+            continue
+        if many is None:
+            assert any(solution.singular for solution in one)
+        else:
+            np.testing.assert_allclose(many, [solution.q for solution in one], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", CLOSED)
 def test_a_well_placed_pose_has_eight_solutions_of_eight_branches(arms, name) -> None:
     robot = arms[name]
     q = {
