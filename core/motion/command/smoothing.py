@@ -107,7 +107,7 @@ class JointMotion:
     def averaged(self, window: float, t: FloatArray, out: States | None = None) -> States:
         """The same of the mean over the last ``window`` > 0 seconds."""
         out = out or _empty(len(t), self.q.shape[1])
-        _average(self.t, self.q, self.dq, self.areas, window, t, *out)
+        _fill_averages(self, window, t, *out)
         return out
 
 
@@ -170,50 +170,51 @@ def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
         else:
             t = even_times(motion.t[0], motion.t[-1] + window, step)
         q, dq = (np.empty((len(t), motion.q.shape[1])) for _ in range(2))
-        if motion.step == step:
-            _average_evenly(motion, window, t, q, dq)
-        else:
-            _average(motion.t, motion.q, motion.dq, motion.areas, window, t, q, dq, _NOT_WANTED)
+        _fill_averages(motion, window, t, q, dq, _NOT_WANTED)
         motion.means[window, step] = JointMotion(t, q, dq, step)
     return motion.means[window, step]
 
 
-def _average_evenly(
-    motion: JointMotion, window: float, t: FloatArray, q: FloatArray, dq: FloatArray
+def _fill_averages(
+    motion: JointMotion,
+    window: float,
+    t: FloatArray,
+    q: FloatArray,
+    dq: FloatArray,
+    ddq: FloatArray,
 ) -> None:
-    """Write the mean over a window at the knots of a motion, which are even, and some behind them.
+    """Write the mean over a window at times (T,); accelerations where there is room for them.
 
-    There the window begins at the same place of an interval each time: what weighs knots is worked
-    out once.
+    Where times stand at every knot, or at each so many, the window begins at the same place of an
+    interval each time: what weighs knots is worked out once.
     """
-    count, back = len(motion.t), int(np.ceil(window / motion.step - _SLACK))
-    # Between these the whole window lies in the motion.
-    first, last = min(back, len(t)), min(count, len(t))
-    for part in (slice(0, first), slice(max(first, last), len(t))):
-        given = motion.t, motion.q, motion.dq, motion.areas, window, t[part]
-        _average(*given, q[part], dq[part], _NOT_WANTED)
-    if last <= first:
-        return
-    since = back * motion.step - window
-    rate = 1.0 / window
-    now, begin, end = (slice(a, last - first + a) for a in (first, 0, 1))
-    positions, slopes, areas = motion.q, motion.dq, motion.areas
-    q[now] = (1.0 + rate * since) * positions[0]
-    flat = (
-        array.reshape(-1)
-        for array in (
-            positions[now],
-            positions[begin],
-            positions[end],
-            slopes[begin],
-            slopes[end],
-            areas[now],
-            areas[begin],
-            q[now],
-            dq[now],
-        )
-    )
-    _fill_means(rate, np.array([0.0, motion.step]), since, *flat)
+    first, stride = _at_knots(motion, t)
+    begin = end = 0
+    if stride > 0:
+        # Between these the whole window lies in the motion, and behind it goes on.
+        back = int(np.ceil(window / motion.step - _SLACK))
+        begin = min(max(-((first - back) // stride), 0), len(t))
+        end = min(max(-((first + 1 - len(motion.t)) // stride), begin), len(t))
+    for part in (slice(0, begin), slice(end, len(t))):
+        if part.start < part.stop:
+            given = motion.t, motion.q, motion.dq, motion.areas, window, t[part]
+            _average(*given, q[part], dq[part], ddq[part])
+    if begin < end:
+        interval, since = np.array([0.0, motion.step]), back * motion.step - window
+        knots = first + begin * stride, back, stride
+        out = q[begin:end], dq[begin:end], ddq[begin:end]
+        _fill_means(1.0 / window, interval, since, *knots, motion.q, motion.dq, motion.areas, *out)
+
+
+def _at_knots(motion: JointMotion, t: FloatArray) -> tuple[int, int]:
+    """Which of a motion's knots the first of times (T,) stands at, and how many knots lie from each
+    to the next; zero where they do not stand so."""
+    if motion.step == 0.0 or len(t) < 2:
+        return 0, 0
+    places = (t - motion.t[0]) / motion.step
+    first, stride = round(float(places[0])), round(float(places[1] - places[0]))
+    off = np.abs(places - (first + stride * np.arange(len(t)))).max()
+    return first, stride if off <= _SLACK else 0
 
 
 def even_times(begin: float, end: float, step: float) -> FloatArray:
@@ -387,25 +388,31 @@ def _fill_means(
     rate: float,
     interval: FloatArray,
     since: float,
-    now: FloatArray,
-    begin: FloatArray,
-    end: FloatArray,
-    begin_slope: FloatArray,
-    end_slope: FloatArray,
+    first: int,
+    back: int,
+    stride: int,
+    q: FloatArray,
+    dq: FloatArray,
     area: FloatArray,
-    begin_area: FloatArray,
     position: FloatArray,
     velocity: FloatArray,
+    acceleration: FloatArray,
 ) -> None:
-    """All joints of all knots in one row; positions are added to. The window begins ``since`` after
-    the beginning of an interval, whose ends are given."""
+    """At every so many knots from ``first`` on, the window beginning so many knots before each and
+    a while after; accelerations are written where there is room for them."""
     w = _cubic(interval, 0, since)
-    for n in range(velocity.size):
-        step = w.rise * (end[n] - begin[n]) + w.v0 * begin_slope[n] + w.v1 * end_slope[n]
-        velocity[n] = rate * (now[n] - begin[n] - step)
-    for n in range(position.size):
-        step = w.area * (end[n] - begin[n]) + w.b0 * begin_slope[n] + w.b1 * end_slope[n]
-        position[n] += rate * (area[n] - begin_area[n] - since * begin[n] - step)
+    for i in range(position.shape[0]):
+        now = first + i * stride
+        k, n = now - back, now - back + 1
+        for j in range(q.shape[1]):
+            way, begin, end = q[n, j] - q[k, j], dq[k, j], dq[n, j]
+            passed = since * (q[k, j] - q[0, j]) + w.area * way + w.b0 * begin + w.b1 * end
+            position[i, j] = q[0, j] + rate * (area[now, j] - area[k, j] - passed)
+            gone = w.rise * way + w.v0 * begin + w.v1 * end
+            velocity[i, j] = rate * (q[now, j] - q[k, j] - gone)
+            if i < acceleration.shape[0]:
+                change = dq[now, j] - (w.rate * way + w.d0 * begin + w.d1 * end)
+                acceleration[i, j] = rate * change
 
 
 @lean

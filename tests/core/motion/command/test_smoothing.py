@@ -237,6 +237,27 @@ def test_an_average_at_even_knots_is_the_average_there(window, step, seed) -> No
     np.testing.assert_allclose(made.dq, speeds, atol=1e-9)
 
 
+@settings(max_examples=40, deadline=None)
+@given(
+    window=st.floats(0.003, 0.2),
+    every=st.integers(1, 4),
+    first=st.integers(-30, 90),
+    seed=st.integers(0, 99),
+)
+def test_an_average_at_some_of_the_even_knots_is_the_average_there(
+    window, every, first, seed
+) -> None:
+    """Accelerations with it, and from before the motion begins to long after it has ended."""
+    rng, step = np.random.default_rng(seed), 0.002
+    t = even_times(0.3, 0.5, step)
+    q, dq = rng.normal(size=(2, len(t), 3))
+    dq[[0, -1]] = 0.0
+    at = t[0] + step * (first + every * np.arange(120))
+    made = JointMotion(t, q, dq, step).averaged(window, at)
+    for one, other in zip(made, JointMotion(t, q, dq).averaged(window, at), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-7)
+
+
 @given(begin=st.floats(0, 100), span=st.floats(0, 10), step=st.sampled_from([1e-3, 2e-3, 4e-3]))
 def test_even_times_cover_a_span_with_multiples_of_their_step(begin, span, step) -> None:
     t = even_times(begin, begin + span, step)
