@@ -82,6 +82,7 @@ class Controller:
         self.sampling = _sampling(self.model) if sampling is None else sampling
         arcs = None if vendor.speaks is None else vendor.speaks.arcs
         self._last_limits: SegmentLimits | None = None
+        self._undriven: tuple[Program, _Attempt] | None = None
         turns = self.model.line_turn, self.model.arc_turn
         self._routes = RouteFinder(robot, vendor.label, *turns, arcs, vendor.nearest)
 
@@ -139,6 +140,7 @@ class Controller:
         if start is not None or program.start is not None:
             return self._plan(program, start)
         made = self._from_some_start(program)
+        self._undriven = None if made.error is None else (program, made)
         if made.error is not None:
             raise made.error
         assert made.path is not None
@@ -150,7 +152,11 @@ class Controller:
         Returns:
             None for where `plan` takes it to stand by itself.
         """
-        return None if program.start is not None else self._from_some_start(program).start
+        if program.start is not None:
+            return None
+        known = self._undriven  # as `plan` has met it just now
+        made = known[1] if known and known[0] is program else self._from_some_start(program)
+        return made.start
 
     def _from_some_start(self, program: Program) -> _Attempt:
         """Plan from one configuration of the first target after the other, until one will do."""

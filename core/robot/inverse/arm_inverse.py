@@ -33,7 +33,8 @@ _SEEDS = 2 * STARTS
 _APART = 6
 """° between arm angles of samples on a curve, above which there is a gap."""
 _KEPT = 2000
-"""Poses of which the solutions with an arm angle are kept: they take long."""
+"""Poses of which the solutions with an arm angle, or why there are none, are kept: they take
+long."""
 SOLVERS = {
     Family.SPHERICAL_WRIST: solve_spherical_wrist,
     Family.PARALLEL_AXES: solve_parallel_axes,
@@ -65,7 +66,9 @@ class ArmInverse:
     ) -> None:
         self._chain, self._known, self._angle = chain, known, angle
         self.ranges = Ranges(joints, coupled)
-        self._found: dict[tuple[bytes, bytes, float], tuple[InverseSolution, ...]] = {}
+        self._found: dict[
+            tuple[bytes, bytes, float], tuple[InverseSolution, ...] | UnreachableError
+        ] = {}
 
     def at(
         self, R: FloatArray, p: FloatArray, arm_angle: float | None = None
@@ -85,8 +88,14 @@ class ArmInverse:
         if key not in self._found:
             if len(self._found) >= _KEPT:
                 self._found.clear()
-            self._found[key] = self._with_arm_angle(self._angle, arm_angle, R, p)
-        return self._found[key]
+            try:
+                self._found[key] = self._with_arm_angle(self._angle, arm_angle, R, p)
+            except UnreachableError as error:
+                self._found[key] = error
+        found = self._found[key]
+        if isinstance(found, UnreachableError):
+            raise found.with_traceback(None)
+        return found
 
     def at_each(self, R: FloatArray, p: FloatArray) -> list[FloatArray | None]:
         """The same configurations (K, n), in the same order, at each of M poses at once.

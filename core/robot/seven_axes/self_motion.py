@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from ...arrays import FloatArray
+from ...arrays import BoolArray, FloatArray
 from ..kinematics.chain import Chain
 from ..kinematics.chain_kernels import jacobian
 from ..kinematics.linear import solve_in_place
@@ -50,10 +50,16 @@ class SelfMotion:
     q: FloatArray
     angle: FloatArray
 
-    def passes(self, q: FloatArray) -> bool:
-        """Whether a configuration (7,) lies on it, whole turns aside."""
-        apart = np.abs(np.remainder(self.q - q + math.pi, 2 * math.pi) - math.pi)
-        return bool((np.linalg.norm(apart, axis=1) < NEAR * STEP).any())
+    def passes(self, q: FloatArray) -> BoolArray:
+        """(S,) of configurations (S, 7): which of them lie on it, whole turns aside."""
+        # Of points on circles of radius 1: twice 1 - cos is the square of a small angle.
+        squares = 2.0 * (AXES - _on_circles(q) @ _on_circles(self.q).T)
+        passed: BoolArray = np.asarray((squares < (NEAR * STEP) ** 2).any(axis=1))
+        return passed
+
+
+def _on_circles(q: FloatArray) -> FloatArray:
+    return np.hstack([np.cos(q), np.sin(q)])
 
 
 def self_motions(
@@ -67,12 +73,13 @@ def self_motions(
         R, p: (3, 3), (3,) m, the pose.
     """
     found: list[SelfMotion] = []
-    for seed in seeds:
-        if any(curve.passes(seed) for curve in found):
-            continue
+    left = np.array(seeds)
+    while len(left):
         q, angles = np.empty((2 * MOST + 1, AXES)), np.empty(2 * MOST + 1)
-        first, last = follow(chain, angle, seed, R, p, q, angles)
-        found.append(SelfMotion(q[first : last + 1], angles[first : last + 1]))
+        first, last = follow(chain, angle, left[0], R, p, q, angles)
+        curve = SelfMotion(q[first : last + 1], angles[first : last + 1])
+        found.append(curve)
+        left = left[1:][~curve.passes(left[1:])]
     return found
 
 
