@@ -294,7 +294,7 @@ class Transcript:
         if error.span is None or not self.parts:
             return False
         message = f"the program stops here, as the controller has an error: {error.message}"
-        return self.leaves_open(SourceError(message, error.span), error.span)
+        return self.leaves_open(SourceError(message, error.span), error.span, stops=True)
 
     def statements(self, reads: Reads) -> tuple[Statement, ...]:
         """What was carried out, each move with the origin of its numbers.

@@ -77,7 +77,7 @@ class Statements:
         if isinstance(statement, Label):
             return Step(mark=statement.name)
         if isinstance(statement, Jump):
-            return Step(exit=Exit.JUMP, label=statement.label)
+            return Step(exit=Exit.JUMP, label=statement.name)
         if isinstance(statement, Return):
             return Step(exit=Exit.ROUTINE)
         if isinstance(statement, End):
@@ -106,16 +106,6 @@ class Statements:
             made_of = self.reads(_terms(statement))
             return Step(writes=self._names(statement.target, self._all), made_of=made_of)
         return Step()
-
-
-def jumps_nowhere(body: Body, around: frozenset[str] = NOTHING) -> Iterator[Jump]:
-    """The jumps in a block that have no label there, nor in the blocks around it."""
-    known = around.union(body.labels)
-    for statement in body.statements:
-        if isinstance(statement, Jump) and statement.label not in known:
-            yield statement
-        for block in statement.blocks if isinstance(statement, If) else ():
-            yield from jumps_nowhere(block, known)
 
 
 def expressions_of(statement: Statement) -> list[Expression]:

@@ -13,7 +13,7 @@ from pathlib import PurePath
 from typing import NoReturn
 from weakref import proxy
 
-from ...errors import FlybyError, InputError, PluginFault, SourceError, Span
+from ...errors import FlybyError, InputError, PluginFault, SourceError, Span, StopError
 from ...program import move
 from ...program.entry_point import ALL, EntryPoint, listed
 from ...program.move import Wait
@@ -29,7 +29,8 @@ from ..execution.scopes import unknown_name
 from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
 from ..reading import ReadOptions
-from .analysis import Statements, expressions_of, jumps_nowhere
+from ..text.nodes import jumps_nowhere, no_label
+from .analysis import Statements, expressions_of
 from .data import Data
 from .expressions import Datum, Expression, Number
 from .program import Grammar, LineProgram, routine_key
@@ -170,10 +171,14 @@ class _Interpreter:
         """Carry a routine out to its end."""
         for one in self._program.routines.values():
             for jump in jumps_nowhere(one):
-                message = f"there is no label {jump.label} in this routine: a controller stops here"
+                message = f"{no_label(jump).message}: a controller stops here"
                 self._out.notes.once(f"jump {jump.span}", message, jump.span)
-        with suppress(_Finished):
-            self._routine(body, "", Span(self._program.file, 1, 1, 0, 0))
+        try:
+            with suppress(_Finished):
+                self._routine(body, "", Span(self._program.file, 1, 1, 0, 0))
+        except StopError as error:
+            if not self._out.stops(error):
+                raise
         return Program(
             self._out.statements(self._reads),
             name,
@@ -221,9 +226,7 @@ class _Interpreter:
             try:
                 self._body(body)
             except _Jumped as found:
-                raise SourceError(
-                    f"there is no label {found.jump.label} in this routine", found.jump.span
-                ) from None
+                raise no_label(found.jump) from None
 
     def _body(self, body: Body) -> None:
         index = 0
@@ -240,7 +243,7 @@ class _Interpreter:
         Raises:
             _Jumped: the label stands in no statement of the block.
         """
-        target = body.labels.get(jump.label)
+        target = body.labels.get(jump.name)
         if target is None:
             raise _Jumped(jump)
         if target > index:

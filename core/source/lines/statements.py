@@ -15,6 +15,7 @@ from typing import Any, Protocol
 from ...errors import Span
 from ...program.move import Move
 from ...program.signal import SignalAction
+from ..text import nodes
 from ..text.files import SourceText
 from .expressions import Datum, Expression
 
@@ -196,20 +197,16 @@ class AssignAll:
     reason: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
+class Label(nodes.Label):
     """Where jumps lead."""
 
-    span: Span
-    name: str
+    __slots__ = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Jump:
+class Jump(nodes.Goto):
     """A jump to a label of the same routine."""
 
-    span: Span
-    label: str
+    __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import ClassVar, Generic, Self, TypeVar
 
-from ...errors import SourceError, Span
+from ...errors import ParseError, SourceError, Span
 from .damage import STEPPED_OVER
 from .lexer import END, END_OF_LINE, NAME, STRAY, Source, Tokens
+from .nodes import Block, jumps_nowhere, no_label
 
 Item = TypeVar("Item")
 
@@ -27,6 +28,7 @@ class TokenCursor(Generic[Source]):
         nouns: what a message calls tokens of the kinds that do not name themselves well.
         index: of the token that comes next.
         depth: brackets and blocks that are open.
+        jumps: whether a jump was read since `check_jumps`.
     """
 
     keywords: ClassVar[Mapping[str, str]]
@@ -41,6 +43,7 @@ class TokenCursor(Generic[Source]):
         self._base = tokens.base
         self.index = 0
         self.depth = 0
+        self.jumps = False
 
     @property
     def kind(self) -> str:
@@ -148,6 +151,20 @@ class TokenCursor(Generic[Source]):
         if self.source.damage is None:
             raise error
         self.source.damage.step_over(error, then)
+
+    def check_jumps(self, body: Block, around: frozenset[str] = frozenset()) -> None:
+        """Refuse jumps that lead nowhere, as controllers do when they load a program.
+
+        Args:
+            body: of the routine that was read.
+            around: names of further labels that its jumps may lead to.
+
+        Raises:
+            SourceError: there is one, and programs are read as a whole or not at all.
+        """
+        for jump in jumps_nowhere(body, around) if self.jumps else ():
+            error = ParseError(no_label(jump).message, jump.span)
+            self.step_over(error, "the program ends where it is carried out")
 
     def begins_line(self) -> bool:
         """Whether the next token is the first of its line, which the last token does not share."""

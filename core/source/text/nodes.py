@@ -6,12 +6,13 @@ form; names are looked up as the language folds them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cached_property
 from itertools import zip_longest
+from typing import Protocol
 
-from ...errors import SourceError, Span
+from ...errors import SourceError, Span, StopError
 from .quick import quick
 
 
@@ -208,6 +209,37 @@ class Goto(Statement):
     """A jump to a label."""
 
     name: str
+
+
+class Labelled(Protocol):
+    """Statements in order, some of which are labels."""
+
+    @property
+    def statements(self) -> Sequence[object]:
+        """Those of it; `blocks` of one are inside it."""
+
+    @property
+    def labels(self) -> Mapping[str, int]:
+        """Places of its labels by their names."""
+
+
+def jumps_nowhere(block: Labelled, around: frozenset[str] = frozenset()) -> Iterator[Goto]:
+    """The jumps in a block that have no label there, nor in the blocks around it.
+
+    Args:
+        around: names of the labels in those.
+    """
+    known = around.union(block.labels)
+    for statement in block.statements:
+        if isinstance(statement, Goto) and statement.name not in known:
+            yield statement
+        for inner in getattr(statement, "blocks", ()):
+            yield from jumps_nowhere(inner, known)
+
+
+def no_label(jump: Goto) -> StopError:
+    """The error of a jump that leads nowhere, where it is carried out."""
+    return StopError(f"there is no label {jump.name} in the blocks round this jump", jump.span)
 
 
 @quick(frozen=True, slots=True)

@@ -14,13 +14,14 @@ from typing import NoReturn
 from weakref import proxy
 
 from ....core.door import spelt
-from ....core.errors import Note, SourceError, Span
+from ....core.errors import Note, SourceError, Span, StopError
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.analysis import Analysis
 from ....core.source.execution.flow import Flow
 from ....core.source.execution.loops import Loop
 from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.reading import ReadOptions
+from ....core.source.text.nodes import no_label
 from ..motion.settings_instructions import SETS
 from ..syntax import tree
 from ..values.data import Globals
@@ -96,6 +97,10 @@ class Interpreter(RapidHost):
             if other is not None:
                 self.out.notes.once("pass", other[1], other[0].span)
 
+                except StopError as error:
+                    if not self.out.stops(error):
+                        raise
+                    break
     def _stop_at(self, error: ProgramError) -> NoReturn:
         """No handler takes an error of the program: what it has driven until there was driven.
 
@@ -348,9 +353,7 @@ class Interpreter(RapidHost):
         except _Returned as returned:
             return returned.value
         except _Jump as jump:
-            raise SourceError(
-                f"no label '{jump.goto.name}' can be reached from here", jump.goto.span
-            ) from None
+            raise no_label(jump.goto) from None
         finally:
             self.meter.back()
             self.out.notes.where = where

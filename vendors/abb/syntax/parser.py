@@ -231,6 +231,11 @@ def _routine(cursor: Cursor, start: int, local: bool) -> Routine:
     body = parse_block(cursor, ends, head, start)
     handler = _handler(cursor, ends, head, start)
     cursor.expect(end, f"to end {head}")
+    if cursor.jumps:
+        cursor.check_jumps(body)
+        if handler is not None:
+            cursor.check_jumps(handler.body, frozenset(body.labels))
+        cursor.jumps = False
     return Routine(
         cursor.span_from(start),
         kind,

@@ -170,6 +170,7 @@ def _test(cursor: Cursor, start: int) -> tree.Test:
 def _goto(cursor: Cursor, start: int) -> tree.Goto:
     name = cursor.name("a label").lower()
     cursor.expect(";", "after the label")
+    cursor.jumps = True
     return tree.Goto(cursor.span_from(start), name)
 
 

@@ -8,6 +8,7 @@ from ....core.errors import SourceError
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.transcript import Transcript
 from ....core.source.text.arguments import wrong_count
+from ....core.source.text.nodes import no_label
 from ..syntax.tree import Call, Name, Routine
 from ..values.data import Data
 from ..values.evaluator import Evaluator
@@ -68,9 +69,7 @@ class Routines:
         except Returned as returned:
             value = returned.value
         except Jump as jump:
-            raise SourceError(
-                f"no label '{jump.goto.name}' can be reached from here", jump.goto.span
-            ) from None
+            raise no_label(jump.goto) from None
         except Left:
             raise SourceError("EXIT stands outside a loop", routine.span) from None
         finally:

@@ -111,6 +111,9 @@ def _routine(cursor: Cursor, start: int, shared: bool, notes: list[Note]) -> Rou
     # A function that ends with END is met, and no controller would mistake it.
     ends = frozenset({end, "end"})
     body = _body(cursor, ends, f"{kind.upper()} {text}", begin, notes)
+    if cursor.jumps:
+        cursor.check_jumps(body)
+        cursor.jumps = False
     return Routine(span, text.lower(), text, parameters, body, returns, shared)
 
 

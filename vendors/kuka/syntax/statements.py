@@ -236,6 +236,7 @@ def _end(cursor: Cursor, start: int) -> Span:
 
 def _goto(cursor: Cursor, start: int) -> tree.Goto:
     name = cursor.name("a label").lower()
+    cursor.jumps = True
     return tree.Goto(_line(cursor, start, "GOTO"), name)
 
 
