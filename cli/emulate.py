@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..core.errors import EntryError, FlybyError, InputError, OptionError
+from ..core.display import counted
+from ..core.errors import EntryError, FaultCause, FlybyError, InputError, OptionError
 from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with, next_command
@@ -167,6 +168,8 @@ def _each(
 ) -> None:
     """Drive every routine that a program may begin with, and report each.
 
+    What those move to that take arguments may hang on these alone: that is no fault of theirs.
+
     Args:
         why: where nobody has asked for each of them.
     """
@@ -177,7 +180,8 @@ def _each(
         raise InputError(f"{program}: no routine in it moves the robot: there is nothing to drive")
     if why:
         warn(f"{why}: each routine that moves the robot is driven by itself; --entry names one")
-    failed = all(entry.parameters for entry in moving)
+    failed, driven = False, 0
+    through: list[bool] = []
     told: list[dict[str, Any]] = []
     for entry in moving:
         call = f"{entry.name}({', '.join(entry.parameters)})" if entry.parameters else entry.name
@@ -185,26 +189,29 @@ def _each(
         told.append(said)
         if not as_json:
             print_rich(f"\n{entry}")
-        if entry.parameters:
-            if not as_json:
-                print_rich(f"takes arguments: --entry '{call}'")
-            continue
         try:
             with progress(f"driving {entry.name}") as say:
                 read = read_with(program, replace(source, entry=entry.name))
                 run = _driven(read, replace(options, report=say))
         except FlybyError as error:
-            fail(str(error))
-            failed, said["error"] = True, str(error)
+            hint = f"; with arguments: --entry '{call}'" if entry.parameters else ""
+            fail(f"{error}{hint}")
+            failed, said["error"] = failed or not entry.parameters, str(error)
         else:
-            failed = failed or bool(run.faults)
+            causes = {fault.cause for fault in run.faults}
+            failed = failed or bool(causes - ({FaultCause.OPEN} if entry.parameters else set()))
+            driven += 1
+            through += [bool(entry.parameters)] if not causes else []
             if as_json:
                 said["run"] = _json(run)
             else:
                 _tell(run)
     if as_json:
         print_json({"routines": told})
-    if failed:
+    else:
+        open_ = f", {sum(through)} of them with arguments that nobody says" if any(through) else ""
+        print_rich(f"\n{len(through)} of {counted(moving, 'routine')} driven to the end{open_}")
+    if failed or not driven:
         raise typer.Exit(1)
 
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import shlex
+from contextlib import suppress
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.door import spelt
-from .options.guessed_robot import read_or_guess
+from ..core.errors import EntryError, FlybyError, InputError
+from ..core.program.entry_point import ALL
+from .options.guessed_robot import with_robot
 from .options.keywords import by_keywords
-from .read import SourceOptions
+from .read import SourceOptions, read_with
 from .setup import setup_of_program, start_of
 
 if TYPE_CHECKING:
@@ -45,7 +49,8 @@ def next_command(questions: Questions, program: Path, out: Path, options: Source
 def ask_with(source: str | Path, options: SourceOptions) -> Questions:
     """What a program asks that no file says: signals, dialogs, data, routines, loops, branches.
 
-    It is read with everything unknown at its default.
+    It is read with everything unknown at its default; of one that begins nowhere in particular,
+    and of the entry ``all``, each routine that moves the robot.
 
     Args:
         source: a file, a folder that holds one program, or a text of several lines.
@@ -60,11 +65,39 @@ def ask_with(source: str | Path, options: SourceOptions) -> Questions:
     from ..core.source.reading import Reading
     from .results.questions import Questions
 
-    program = read_or_guess(source, options)
-    reading = program.reading
-    name = Path(reading.main).name if isinstance(reading, Reading) else program.name
-    named = "" if program.setup is None or _in_backup(program) else program.setup.robot.name
-    return Questions.of(_with_places(program), name, named)
+    programs = _read(source, options)
+    first, reading = programs[0], programs[0].reading
+    name = Path(reading.main).name if isinstance(reading, Reading) else first.name
+    named = "" if first.setup is None or _in_backup(first) else first.setup.robot.name
+    asked: dict[tuple[str, str], Question] = {}
+    for question in chain.from_iterable(map(_with_places, programs)):
+        asked.setdefault((question.table, question.key), question)
+    return Questions.of(tuple(asked.values()), name, named)
+
+
+def _read(source: str | Path, options: SourceOptions) -> list[Program]:
+    """A program; where it begins nowhere in particular, or that is asked for, each of its routines
+    that moves the robot and can be read.
+
+    Raises:
+        FlybyError: it cannot be read, or none of them can.
+    """
+    options, _ = with_robot(source, options)
+    if options.entry != ALL:
+        with suppress(EntryError):
+            return [read_with(source, options)]
+    entries = read_with(source, replace(options, entry=ALL)).entries
+    moving = [replace(options, entry=entry.name) for entry in entries if entry.moves]
+    found: list[Program] = []
+    for one in moving:
+        try:
+            found.append(read_with(source, one))
+        except FlybyError:
+            if one is moving[-1] and not found:
+                raise
+    if not found:
+        raise InputError(f"{source}: no routine in it moves the robot: there is nothing to ask")
+    return found
 
 
 def _in_backup(program: Program) -> bool:

@@ -42,6 +42,15 @@ def listed(entries: Iterable[EntryPoint]) -> str:
     return ", ".join(map(str, found[:_SHOWN])) + more
 
 
+def without_caller(name: str, parameters: Iterable[str]) -> str:
+    """What is said of a routine with arguments that a program is begun with."""
+    names = ", ".join(parameters)
+    return (
+        f"{name} is read without a caller: its arguments ({names}) have no values, unless a file "
+        f"of answers gives them, or the entry: {name}({names}) with values in their places"
+    )
+
+
 def others_drive(entries: Sequence[EntryPoint]) -> bool:
     """Whether a program drives nothing because it was begun with a routine that never does."""
     return any(e.moves for e in entries) and not any(e.moves for e in entries if e.begun)

@@ -174,7 +174,8 @@ def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, Sour
     if program is not None and (program.moves or options.entry is not None):
         return program, options
     routines = read_undriven(source, replace(options, entry=ALL)).entries
-    moving = [routine for routine in routines if routine.moves and not routine.parameters]
+    moving = [routine for routine in routines if routine.moves]
+    moving = [routine for routine in moving if not routine.parameters] or moving
     if not moving:
         raise InputError(f"{source} drives nothing")
     options = replace(options, entry=max(moving, key=lambda routine: routine.moves).name)

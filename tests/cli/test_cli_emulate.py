@@ -294,17 +294,40 @@ def test_routines_with_faults_and_arguments_are_listed_in_json(
     flyby: Flyby, tmp_path: Path
 ) -> None:
     path = two_routines(tmp_path, f"{TURN % 0}\nMoveL pGone,v100,fine,tool0;\n{TURN % 10}")
-    path.write_text(path.read_text().replace("ENDMODULE", NEEDY), "utf-8")
+    path.write_text(path.read_text().replace("ENDMODULE", NEEDY + "ENDMODULE"), "utf-8")
     result = flyby("emulate", path, "--robot", ROBOT, "--entry", "all", "--json")
     assert result.exit_code == 1
     faulty, needy = json.loads(result.stdout)["routines"]
     lost = faulty["run"]["moves"][1]
     assert (lost["kind"], lost["position_m"], lost["driven"]) == ("move", None, False)
-    assert needy == {"entry": "needy(x)", "moves": 1}
+    assert (needy["entry"], needy["moves"]) == ("needy(v)", 2)
+    assert [one["driven"] for one in needy["run"]["moves"]] == [False, True]
 
 
-NEEDY = """PROC needy(num x)
-  MoveAbsJ [[x,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;
+def test_routines_that_go_where_their_arguments_say_are_no_failure(
+    flyby: Flyby, tmp_path: Path
+) -> None:
+    path = two_routines(tmp_path, *(f"{TURN % 0}\n{TURN % n}" for n in (10, 20)))
+    path.write_text(path.read_text().replace("ENDMODULE", NEEDY + OPEN + "ENDMODULE"), "utf-8")
+    result = flyby("emulate", path, "--robot", ROBOT)
+    assert result.exit_code == 0
+    assert "3 of 4 routines driven to the end, 1 of them with arguments" in result.stdout
+    assert "depends on the argument p of open" in result.stderr
+    assert "with arguments: --entry 'open(p)'" in result.stderr
+    asked = flyby("ask", path, "--robot", ROBOT)
+    assert asked.exit_code == 0
+    assert "\n#v = [" in asked.stdout and "\n#p = [" in asked.stdout
+    path.write_text(f"MODULE two\n{OPEN}ENDMODULE\n", "utf-8")
+    assert flyby("emulate", path, "--robot", ROBOT).exit_code == 1
+
+
+NEEDY = f"""PROC needy(speeddata v)
+  {TURN % 0}
+  {TURN.replace("v1000", "v") % 20}
+ENDPROC
+"""
+OPEN = """PROC open(robtarget p)
+  MoveL p,v100,fine,tool0;
 ENDPROC
 ENDMODULE"""
 

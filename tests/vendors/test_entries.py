@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from flyby.core.errors import EntryError, SourceError
 from flyby.core.program.entry_point import others_drive
 from flyby.core.program.program import Program
+from flyby.core.program.question import Answer
 from flyby.core.registry import find_vendor
+from flyby.core.source.execution.answers import Answers
+from flyby.core.source.patch.edits import difference
 from flyby.core.source.reading import ReadOptions
 
 EXTERNAL = ",".join(["9E9"] * 6)
@@ -59,11 +67,30 @@ end
 TARGETS = {"abb": "p10", "kuka": "{X 700,Y 0,Z 800,A 0,B 90,C 0}", "ur": "p[0.4,0,0.4,0,3.1,0]"}
 
 
-def read(vendor: str, entry: str | None) -> Program:
+WRITTEN = {
+    "abb": f"[[600,0,{{0}}],[0,0,1,0],[0,0,0,0],[{EXTERNAL}]]",
+    "kuka": "{{X 700,Y 0,Z {0},A 0,B 90,C 0}}",
+    "ur": "p[0.4,0,{0},0,3.1,0]",
+}
+
+
+def answer_of(vendor: str, written: str) -> Answer:
+    """A target as a file of answers says it."""
+    return nested(json.loads(written.replace("9E9", "9e9"))) if vendor == "abb" else written
+
+
+def nested(item: Any) -> Answer:
+    return tuple(map(nested, item)) if isinstance(item, list) else float(item)
+
+
+ANSWERS = {vendor: answer_of(vendor, text.format(0.5)) for vendor, text in WRITTEN.items()}
+
+
+def read(vendor: str, entry: str | None, answers: Answers | None = None) -> Program:
     reader = find_vendor(vendor).reader
     assert reader is not None
     file, text = TEXTS[vendor]
-    return reader.read(text, file, ReadOptions(entry=entry))
+    return reader.read(text, file, ReadOptions(entry=entry, answers=answers or Answers()))
 
 
 @pytest.mark.parametrize("vendor", TEXTS)
@@ -95,6 +122,32 @@ def test_arguments_that_are_none_are_refused(vendor: str, arguments: str) -> Non
         return
     with pytest.raises(SourceError):
         read(vendor, f"Pick({arguments})")
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+def test_arguments_that_nobody_gives_are_asked_where_programs_go_on(vendor: str) -> None:
+    """A move to one of them is not known, with an answer it goes there; strictly it is refused."""
+    first, second = read(vendor, "Pick", Answers(goes_on=True)).moves
+    assert first.open and second.open
+    program = read(vendor, "Pick", Answers(goes_on=True))
+    asked = {question.key.casefold() for question in program.questions if not question.answered}
+    assert {"p", "n"} <= asked or vendor == "kuka"  # which asks for what it needs alone
+    assert any("read without a caller: its arguments (n, p)" in n.message for n in program.notes)
+    told = Answers(goes_on=True, values={"n": 1.0, "p": ANSWERS[vendor]})
+    assert not any(move.open for move in read(vendor, "Pick", told).moves)
+    if vendor != "kuka":
+        with pytest.raises(SourceError, match="argument"):
+            read(vendor, "Pick")
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+@given(at=st.floats(0.1, 0.4), n=st.integers(0, 5))
+def test_answers_and_arguments_drive_alike(vendor: str, at: float, n: int) -> None:
+    said = WRITTEN[vendor].format(round(at, 3) * (1.0 if vendor == "ur" else 1000.0))
+    answers = Answers(goes_on=True, values={"n": float(n), "p": answer_of(vendor, said)})
+    called = read(vendor, f"Pick({n}, {said})", Answers(goes_on=True))
+    moves = (Program(program.moves) for program in (read(vendor, "Pick", answers), called))
+    assert difference(*moves, 1e-9) is None
 
 
 SEVERAL = {

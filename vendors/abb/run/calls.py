@@ -6,11 +6,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ....core.errors import SourceError, Span
+from ....core.program.question import QuestionKind
 from ..syntax.tree import Argument, Expression, Name, Number, Parameter, Routine
 from ..values.arguments import check_count
+from ..values.defaults import default_of
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope, Variable, unknown_name
-from ..values.types import Foreign, Type, find_unknown, interpreted
+from ..values.types import Foreign, Type, Unknown, find_unknown, interpreted
 
 
 def present(arguments: Iterable[Argument], scope: Scope) -> Iterator[Argument]:
@@ -52,13 +54,36 @@ def pass_arguments(
         value = argument.value
         if parameter.mode != "in" and isinstance(value, Name) and value.path:
             back.append((cell, _fixed(evaluator, value, caller)))
+    _leave_absent(evaluator, routine, scope)
+    return back
+
+
+def leave_open(evaluator: Evaluator, routine: Routine, scope: Scope) -> None:
+    """The cells of a routine that nobody calls: what its arguments are is asked."""
+    for parameter in needed_by(routine):
+        span = parameter.span
+        type_ = evaluator.data.type(parameter.type, scope.home, span)
+        value = evaluator.answers.ask_by(parameter.name, span, type_, (), QuestionKind.DATUM)
+        if value is None:
+            reason = f"the argument {parameter.name} of {routine.text}"
+            value = Unknown(reason, span, parameter.name, default_of(type_))
+        scope.cells[parameter.name] = Variable(parameter.name, type_, value=value)
+    _leave_absent(evaluator, routine, scope)
+
+
+def _leave_absent(evaluator: Evaluator, routine: Routine, scope: Scope) -> None:
+    """The cells of the parameters that are not given."""
     for parameter in routine.parameters:
         if parameter.name not in scope.cells:
             type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
             scope.cells[parameter.name] = Variable(
                 parameter.name, type_, value=False, present=False
             )
-    return back
+
+
+def needed_by(routine: Routine) -> list[Parameter]:
+    """The parameters that must be given."""
+    return [p for p in routine.parameters if not p.optional]
 
 
 def _fixed(evaluator: Evaluator, name: Name, caller: Scope) -> Name:
@@ -80,7 +105,7 @@ def _matched(
     Raises:
         SourceError: there are too few or too many, or of other names.
     """
-    required = [p for p in routine.parameters if not p.optional]
+    required = needed_by(routine)
     values = [a for a in arguments if a.option is None]
     check_count(routine.text, len(required), len(values), span)
     for parameter, argument in zip(required, values, strict=True):

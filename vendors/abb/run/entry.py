@@ -6,14 +6,15 @@ from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
 from ....core.errors import EntryError, Note, SourceError, Span
-from ....core.program.entry_point import EntryPoint, listed
+from ....core.program.entry_point import EntryPoint, listed, without_caller
 from ....core.source.text.files import SourceText
 from ..syntax.parser import parse
 from ..syntax.traversal import calls_in, expressions_of
-from ..syntax.tree import Argument, Invoke, Module, Parameter, Routine
+from ..syntax.tree import Argument, Invoke, Module, Routine
 from ..values.data import Globals
 from ..values.scope import NOWHERE, unknown_name
 from .analysis import count_moves
+from .calls import needed_by
 
 MAIN = "main"
 ENTRY = "--entry"
@@ -30,7 +31,7 @@ def entry_points(
     """
     counted = [(r, count_moves(data, r)) for module in own for r in module.routines]
     return tuple(
-        EntryPoint(r.text, tuple(p.name for p in _needed(r)), moves, r is begun)
+        EntryPoint(r.text, tuple(p.name for p in needed_by(r)), moves, r is begun)
         for r, moves in counted
         if r.kind == "proc" or (r.kind == "func" and moves)
     )
@@ -52,7 +53,12 @@ def entry_arguments(name: str, text: str) -> tuple[SourceText, tuple[Argument, .
 
 
 def choose_entry(
-    data: Globals, own: Sequence[Module], entry: str | None, file: str, arguments: bool = False
+    data: Globals,
+    own: Sequence[Module],
+    entry: str | None,
+    file: str,
+    arguments: bool = False,
+    goes_on: bool = False,
 ) -> tuple[Routine, tuple[Note, ...]]:
     """The routine to run, and what is to be said about the choice.
 
@@ -65,6 +71,7 @@ def choose_entry(
         entry: a procedure's name; None if the user gave none.
         file: name of the user's file.
         arguments: whether the user gives arguments.
+        goes_on: whether it may be read without those that it takes.
 
     Raises:
         SourceError: there is no such procedure, it takes arguments, or several would do.
@@ -73,7 +80,10 @@ def choose_entry(
     found = _routine(data, own, entry or MAIN, where, fetch=entry is not None)
     if found is not None:
         if not _startable(found) and not arguments:
-            names = ", ".join(p.name for p in _needed(found))
+            needed = [p.name for p in needed_by(found)]
+            if goes_on:
+                return found, (Note(without_caller(found.text, needed), span=found.span),)
+            names = ", ".join(needed)
             message = (
                 f"PROC {found.text} takes arguments: name them with the entry, as "
                 f"{found.text}({names}), with values or names of data in their places"
@@ -101,12 +111,8 @@ def choose_entry(
     raise (EntryError if entry is None else SourceError)(message, where)
 
 
-def _needed(routine: Routine) -> list[Parameter]:
-    return [p for p in routine.parameters if not p.optional]
-
-
 def _startable(routine: Routine) -> bool:
-    return not _needed(routine)
+    return not needed_by(routine)
 
 
 def _routine(

@@ -30,7 +30,7 @@ from ..values.errors import ProgramError
 from ..values.scope import Scope, Variable
 from ..values.types import Unknown, Value, find_unknown, interpreted, mismatch
 from .analysis import RapidTree
-from .calls import pass_arguments, present
+from .calls import leave_open, pass_arguments, present
 from .entry import MAIN
 from .flow import run_for, run_if, run_test, run_while
 from .host import Finished, RapidHost
@@ -83,8 +83,12 @@ class Interpreter(RapidHost):
 
     # --------------------------------------------------------------------- the run
 
-    def run(self, entry: tree.Routine, arguments: tuple[tree.Argument, ...] = ()) -> None:
-        """Execute a procedure to its end; ``main`` as often as the user says."""
+    def run(self, entry: tree.Routine, arguments: tuple[tree.Argument, ...] | None = None) -> None:
+        """Execute a procedure to its end; ``main`` as often as the user says.
+
+        Args:
+            arguments: of it; None where nobody gives any.
+        """
         scope = self.data.scope_of(entry)
         before = decisive(self.evaluator, entry.body, scope) if entry.name == MAIN else ()
         with suppress(Finished):
@@ -93,14 +97,14 @@ class Interpreter(RapidHost):
                     self.call(entry, arguments, scope, entry.span)
                 except ProgramError as error:
                     self._stop_at(error)
-            other = next_pass(self.evaluator, before) if self.course.answers.cycles == 1 else None
-            if other is not None:
-                self.out.notes.once("pass", other[1], other[0].span)
-
                 except StopError as error:
                     if not self.out.stops(error):
                         raise
                     break
+            other = next_pass(self.evaluator, before) if self.course.answers.cycles == 1 else None
+            if other is not None:
+                self.out.notes.once("pass", other[1], other[0].span)
+
     def _stop_at(self, error: ProgramError) -> NoReturn:
         """No handler takes an error of the program: what it has driven until there was driven.
 
@@ -332,13 +336,21 @@ class Interpreter(RapidHost):
         return interpreted(value, type_, call.span)
 
     def call(
-        self, routine: tree.Routine, arguments: tuple[tree.Argument, ...], caller: Scope, span: Span
+        self,
+        routine: tree.Routine,
+        arguments: tuple[tree.Argument, ...] | None,
+        caller: Scope,
+        span: Span,
     ) -> Value | None:
-        """Run a routine."""
+        """Run a routine; without arguments, these are not known."""
         outer = self.data.scope_of(routine)
         scope = outer.inner(f"{routine.kind.upper()} {routine.text}")
-        given = tuple(present(arguments, caller))
-        back = pass_arguments(self.evaluator, routine, given, caller, scope, span)
+        back: list[tuple[Variable, tree.Name]] = []
+        if arguments is None:
+            leave_open(self.evaluator, routine, scope)
+        else:
+            given = tuple(present(arguments, caller))
+            back = pass_arguments(self.evaluator, routine, given, caller, scope, span)
         for declaration in routine.declarations:
             self.data.declare(declaration, scope)
         self.meter.call(routine.text, span)

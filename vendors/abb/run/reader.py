@@ -140,10 +140,10 @@ def _program(
     name, given = entry_call(options.entry)
     if name == ALL and data.routines.get(ALL) is None:
         return Program((), own[0].text, entries=entry_points(data, own))
-    entry, notes = choose_entry(data, own, name, main, given is not None)
+    entry, notes = choose_entry(data, own, name, main, given is not None, options.answers.goes_on)
     texts = {name: file.text for name, file in files.items()}
-    arguments: tuple[Argument, ...] = ()
-    if given:
+    arguments: tuple[Argument, ...] | None = None
+    if given is not None:
         source, arguments = entry_arguments(entry.text, given)
         texts[source.file] = source.text
     run = Interpreter(data, texts, options, external_axes or axis_kinds(options.robot))

@@ -31,7 +31,7 @@ from __future__ import annotations
 import re
 
 from ....core.errors import Note, SourceError, Span, UnknownNameError
-from ....core.program.entry_point import ALL, entry_call, listed
+from ....core.program.entry_point import ALL, entry_call, listed, without_caller
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
 from ....core.source.reading import Files, ReadOptions
@@ -166,9 +166,5 @@ def _open_arguments(entry: Routine) -> tuple[Note, ...]:
     """What is said of an entry that nobody calls with arguments."""
     if not entry.parameters:
         return ()
-    names = ", ".join(parameter.name for parameter in entry.parameters)
-    message = (
-        f"{entry.text} is read without a caller: its arguments ({names}) have no values, unless a "
-        "file of answers gives them"
-    )
-    return (Note(message, span=entry.span),)
+    names = (parameter.name for parameter in entry.parameters)
+    return (Note(without_caller(entry.text, names), span=entry.span),)

@@ -9,13 +9,18 @@ from pathlib import PurePath
 
 from ....core.door import spelt
 from ....core.errors import EntryError, SourceError, StopError
-from ....core.program.entry_point import ALL, EntryPoint, listed
+from ....core.program.entry_point import ALL, EntryPoint, listed, without_caller
 from ....core.program.program import Program
+from ....core.program.question import QuestionKind
+from ....core.source.execution.course import About
 from ....core.source.execution.transcript import Transcript
 from ....core.source.text.damage import nothing_driven
 from ..motion.settings import CALLS
 from ..syntax.traversal import all_calls, all_statements, run_in
-from ..syntax.tree import Assign, Block, Call, Define, Evaluate, Statement
+from ..syntax.tree import Argument, Assign, Block, Call, Define, Evaluate, Name, Statement
+from ..values.answers import answered
+from ..values.scope import Scope, Variable
+from ..values.values import Unknown
 from .analysis import SENT
 from .exits import Finished
 from .interpreter import Interpreter
@@ -128,8 +133,12 @@ def _points(
 
 
 def _point(run: Interpreter, define: Define, begun: bool = False) -> EntryPoint:
-    needed = tuple(p.name for p in define.parameters if p.default is None)
-    return EntryPoint(define.name, needed, run.analysis.move_count(define.body), begun)
+    return EntryPoint(define.name, _needed_by(define), run.analysis.move_count(define.body), begun)
+
+
+def _needed_by(define: Define) -> tuple[str, ...]:
+    """Names of the parameters that must be given."""
+    return tuple(p.name for p in define.parameters if p.default is None)
 
 
 def _inside(define: Define, name: str) -> tuple[Define, ...]:
@@ -143,13 +152,24 @@ def _inside(define: Define, name: str) -> tuple[Define, ...]:
 
 
 def _start(run: Interpreter, define: Define) -> None:
+    """Run a function; where programs go on, what it needs as arguments is asked."""
     start, end = define.head
-    run.call(Call(start, end, define.name, ()), run.root)
+    span = run.texts.span(start, end)
+    caller = Scope("the caller", outer=run.root)
+    needed = _needed_by(define) if run.course.answers.goes_on else ()
+    for name in needed:
+        told = run.course.value(name, About(span, QuestionKind.DATUM))
+        unknown = Unknown(f"the argument '{name}' of {define.name}", span, key=name)
+        caller.cells[name] = Variable(unknown if told is None else answered(told))
+    if needed:
+        run.note_once("entry", without_caller(define.name, needed), span)
+    arguments = tuple(Argument(start, end, name, Name(start, end, name)) for name in needed)
+    run.call(Call(start, end, define.name, arguments), caller)
 
 
 def _first(defines: Sequence[Define], stem: str, run: Interpreter) -> Define:
     """The function that is the program."""
-    able = [d for d in defines if all(p.default is not None for p in d.parameters)]
+    able = [d for d in defines if not _needed_by(d)]
     if len(defines) == 1 and able:
         return defines[0]
     called = {name for d in defines for name in all_calls(d.body) if name != d.name}
