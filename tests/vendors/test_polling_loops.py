@@ -14,8 +14,12 @@ from flyby.core.source.execution.answers import Answers
 
 EXTERNAL = "[9E9,9E9,9E9,9E9,9E9,9E9]"
 RAPID = f"""MODULE m
+  RECORD box num count; pos at; ENDRECORD
+  RECORD job_of num what; box parts; ENDRECORD
+  PERS job_of order:=[0,[2,[0,0,0]]];
   PERS num job:=0;
   PERS bool go_home:=FALSE;
+  PERS bool lamps{{3}}:=[FALSE,FALSE,FALSE];
   VAR num n:=0;
   PROC main()
     go_home:=FALSE;
@@ -74,6 +78,8 @@ def read(vendor: str, body: str, answers: Answers | None = None) -> Program:
         ("abb", "n:=job; IF n=4 THEN A; ENDIF", "job"),
         ("abb", "n:=n+1; IF job=n+1000000 THEN A; ENDIF", "job"),
         ("abb", "IF elsewhere THEN A; elsewhere:=FALSE; ENDIF", ""),
+        ("abb", "IF order.what=3 THEN A; order.what:=0; ENDIF", "order.what, order.parts.count"),
+        ("abb", "IF lamps{2} A;", "lamps"),
         ("kuka", "IF CMD==3 THEN\nA()\nENDIF", "CMD"),
         ("kuka", "SWITCH JOB\nCASE 1,2\nA()\nENDSWITCH", "JOB"),
     ],
@@ -103,11 +109,17 @@ def test_a_motion_that_comes_by_itself_is_waited_for() -> None:
     assert not any("others" in note.message for note in program.notes)
 
 
+def test_a_component_that_others_write_is_answered_by_its_name() -> None:
+    body = "TEST order.what CASE 1: A; CASE 2: A; A; ENDTEST"
+    for what, moves in ((1, 2), (2, 4), (3, 0)):
+        assert len(read("abb", body, Answers(values={"order.what": float(what)})).moves) == moves
+
+
 def test_answers_go_before() -> None:
     body = "IF go_home A;"
-    assert not read("abb", body, Answers(branches={"m.mod:8": 0})).moves
+    assert not read("abb", body, Answers(branches={"m.mod:12": 0})).moves
     # That is the line which `flyby ask` lists: it changes nothing.
-    assert read("abb", body, Answers(passes={"m.mod:7": 1})).moves == read("abb", body).moves
+    assert read("abb", body, Answers(passes={"m.mod:11": 1})).moves == read("abb", body).moves
 
 
 @pytest.mark.parametrize(

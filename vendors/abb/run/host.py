@@ -118,7 +118,7 @@ class RapidHost(ABC):
         found = [(name, self._frames[-1].scope.find(name)) for name in sorted(names)]
         cells = [c for _, c in found if c is not None and id(c) in modules and not c.constant]
         return [
-            *(cell.name for cell in cells if self.evaluator.leave_to_others(cell, span)),
+            *(name for cell in cells for name in self.evaluator.leave_to_others(cell, span)),
             *(n for n, c in found if c is None and self.evaluator.forget_elsewhere(n)),
         ]
 

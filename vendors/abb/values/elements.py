@@ -11,7 +11,17 @@ from ..syntax.tree import Name
 from .errors import NUMBERS, OUT_OF_BOUNDS, ProgramError
 from .located import Located
 from .scope import Variable
-from .types import Foreign, Scalar, Type, Unknown, Value, interpreted, mismatch
+from .types import (
+    BUILT_IN,
+    Foreign,
+    RecordType,
+    Scalar,
+    Type,
+    Unknown,
+    Value,
+    interpreted,
+    mismatch,
+)
 
 ARRAY_LIMIT = 100_000
 """Elements of an array; a controller holds fewer."""
@@ -158,6 +168,30 @@ def _put(old: Value, places: list[int], new: Value) -> Value:
     items = list(old)
     items[places[0]] = _put(items[places[0]], places[1:], new)
     return tuple(items)
+
+
+def written_by_others(
+    value: Value, type_: Type, sizes: Sequence[int], name: str, span: Span
+) -> tuple[Value, list[str]]:
+    """A datum as others may have written it, and the names of its parts of which that holds: what
+    stands by itself, as commands do, and not the numbers of targets, tools and their like.
+
+    Args:
+        sizes: of an array.
+        span: of what reads it.
+    """
+    if isinstance(value, tuple) and sizes:
+        found = [written_by_others(part, type_, sizes[1:], name, span) for part in value]
+        return tuple(part for part, _ in found), next((left for _, left in found if left), [])
+    if isinstance(type_, Scalar) and not isinstance(value, Unknown):
+        return Unknown(f"the value of {name}, which others write", span, nominal=value), [name]
+    if not isinstance(value, tuple) or not isinstance(type_, RecordType):
+        return value, []
+    if type_.name in BUILT_IN:
+        return value, []
+    parts = zip(value, type_.components.items(), strict=True)
+    made = [written_by_others(one, kind, (), f"{name}.{word}", span) for one, (word, kind) in parts]
+    return tuple(part for part, _ in made), [word for _, left in made for word in left]
 
 
 def check_size(name: str, sizes: tuple[int, ...], span: Span) -> None:

@@ -26,6 +26,7 @@ from .elements import (
     gathered,
     located_part,
     replaced,
+    written_by_others,
 )
 from .errors import NOT_PRESENT, NUMBERS, ProgramError
 from .located import Located
@@ -35,7 +36,6 @@ from .types import (
     NUM,
     Foreign,
     RecordType,
-    Scalar,
     Type,
     Unknown,
     Value,
@@ -285,17 +285,16 @@ class Names(ABC):
         elif not cell.constant:
             cell.writer, cell.awaited = writer, False
 
-    def leave_to_others(self, cell: Variable, span: Span) -> bool:
-        """Whether a number, flag or text that was known is so no more, as others may write it."""
-        if not isinstance(cell.type, Scalar) or cell.dimensions or cell.predefined is not None:
-            return False
+    def leave_to_others(self, cell: Variable, span: Span) -> list[str]:
+        """The numbers, flags and texts of a datum that were known and are so no more, as others may
+        write them: by their names."""
+        if cell.predefined is not None:
+            return []
         value = self.settle(cell)
-        if isinstance(value, Unknown):
-            return False
-        reason = f"the value of {cell.name}, which others write"
-        cell.value = Unknown(reason, span, nominal=value)
-        cell.source = None
-        return True
+        cell.value, left = written_by_others(value, cell.type, cell.dimensions, cell.name, span)
+        if left:
+            cell.source = None
+        return left
 
     def forget_elsewhere(self, name: str) -> bool:
         """Whether a datum of a module that is not at hand had a value, which it has no more."""
