@@ -6,6 +6,7 @@ Without an answer waits are satisfied at once, and branches and loops are decide
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -66,6 +67,7 @@ class Course:
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
     _questions: dict[tuple[str, str], Question] = field(default_factory=dict)
+    _elements: dict[str, int] = field(default_factory=dict)
 
     def value(self, text: str, about: About | None = None) -> Answer | None:
         """The answer to a name or call as it stands in the program; None if there is none.
@@ -112,17 +114,20 @@ class Course:
         """What the controller is known to say to a call; None if that is not known."""
         return self.answers.stated.get(key(text))
 
-    def used_as(self, text: str, type_: str, example: Answer) -> None:
+    def used_as(
+        self, text: str, type_: str, example: Answer, instead: Collection[str] = ()
+    ) -> None:
         """What was asked turns out to be of a type, as it is used so.
 
         Args:
             text: under which it was asked.
             type_: what an answer is, in words.
             example: an answer.
+            instead: types that tell less than this one does.
         """
         place = "values", key(text)
         asked = self._questions.get(place)
-        if asked is not None and not asked.type:
+        if asked is not None and (not asked.type or asked.type in instead):
             self._questions[place] = replace(asked, type=type_, example=example)
 
     def used_with(self, text: str, component: str) -> None:
@@ -134,6 +139,14 @@ class Course:
         fields = dict(asked.example) if isinstance(asked.example, Fields) else {}
         shown = Fields({**fields, component: fields.get(component, 1.0)}.items())
         self._questions[place] = replace(asked, type=STRUCTURE, example=shown)
+
+    def element_read(self, text: str, count: int) -> None:
+        """Of what was asked so many elements are there at least, as the last of them is read."""
+        self._elements[key(text)] = max(count, self.elements(text))
+
+    def elements(self, text: str) -> int:
+        """How many elements of what was asked are known to be there; see `element_read`."""
+        return self._elements.get(key(text), 0)
 
     def withdraw(self, text: str) -> None:
         """What was asked is known after all, and not listed."""

@@ -166,6 +166,24 @@ def test_the_examples_of_all_questions_are_answers(tmp_path) -> None:
     assert all(q.answered for q in again if q.table == "values")
 
 
+@pytest.mark.parametrize(
+    ("used", "example", "type_"),
+    [
+        ("movel(p[c[0],c[1],0.3,0,3.14,c[5]])", "p[0, 0, 0, 0, 0, 0]", "pose (m and rad), or six"),
+        ("x = c[5] + 1\n  movel(c)", "p[0, 0, 0, 0, 0, 0]", "pose (m and rad), or six joint"),
+        ("x = c[3] + 1", (0.0,) * 4, "list of: number"),
+        ("x = c[1000000] + 1", (0.0,) * 100, "list of: number"),
+        ("d = c\n  x = d[2] + 1", (0.0,) * 3, "list of: number"),
+        ("x = c[2][1] + 1", (((0.0,) * 2),) * 3, "list of: list of: number"),
+    ],
+)
+def test_what_is_read_by_indices_has_as_many_elements(used, example, type_) -> None:
+    text = f"def m():\n  {HOME}  c = cam.get()\n  {used}\n  {HOME}end\n"
+    program = read(text, "t.script", ReadOptions(answers=Answers(goes_on=True)))
+    (asked,) = (question for question in program.questions if question.key == "cam.get()")
+    assert asked.example == example and asked.type.startswith(type_)
+
+
 def test_a_program_that_goes_nowhere_names_the_data_of_its_targets() -> None:
     text = (
         f"{HOME}off = socket_read_ascii_float(3)\nhere = get_actual_tcp_pose()\n"

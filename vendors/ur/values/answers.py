@@ -10,7 +10,7 @@ from ....core.source.execution.answers import Fields
 from ....core.source.execution.course import About, Course
 from ..syntax.texts import Texts
 from ..syntax.tree import Call, Expression, Index, MethodCall, Name
-from .expected import EXPECTED, list_of, returned_by
+from .expected import returned_by, used, vaguer
 from .instructions import ADD_ONS, asks, kept
 from .values import Struct, Unknown, UrPose, Value
 
@@ -69,12 +69,11 @@ def used_as(run: Asked, expression: Expression, value: Value, kind: str) -> None
         value: of it.
         kind: of `EXPECTED`.
     """
-    depth = 0
     while isinstance(expression, Index):
-        depth += len(expression.indices)
         expression = expression.base
     if isinstance(value, Unknown) and value.key and isinstance(expression, Name | Call):
-        run.course.used_as(value.key, *list_of(EXPECTED[kind], depth))
+        words, example = used(kind, value.depth, run.course.elements(value.key))
+        run.course.used_as(value.key, words, example, vaguer(kind, value.depth))
 
 
 _BROUGHT = (

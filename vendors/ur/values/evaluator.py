@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Protocol
 
 from ....core.errors import SourceError, Span
@@ -157,9 +158,12 @@ def _locate_index(run: Evaluation, index: tree.Index, scope: Scope) -> Located:
             place = plain(run, expression, scope)
             if isinstance(value, PendingInverse):
                 value = run.joints(value)
-            if isinstance(place, Unknown) or isinstance(value, Unknown):
+            if isinstance(value, Unknown):
                 run.literals.consume(base.sources)
-                return Located(value if isinstance(value, Unknown) else place)
+                return Located(_unknown_element(run, value, place, len(index.indices)))
+            if isinstance(place, Unknown):
+                run.literals.consume(base.sources)
+                return Located(place)
             value = element(value, place)
             places.append(whole(place))
     except ValueFault as fault:
@@ -169,6 +173,13 @@ def _locate_index(run: Evaluation, index: tree.Index, scope: Scope) -> Located:
         return Located(value)
     source = element_source(base.sources, len(base.value), places[0])
     return Located(value, () if source is None else (source,))
+
+
+def _unknown_element(run: Evaluation, value: Unknown, place: Value, depth: int) -> Unknown:
+    """What stands ``depth`` indices deep, the first of which is ``place``, in what is not known."""
+    if value.key and not value.depth and type(place) is int:
+        run.course.element_read(value.key, place + 1)
+    return replace(value, depth=value.depth + depth)
 
 
 def _member(run: Evaluation, member: tree.Member, scope: Scope) -> Value:
@@ -223,6 +234,9 @@ def _listed(
             raise run.texts.error_at(
                 f"a pose has six numbers, p[x, y, z, rx, ry, rz], not {len(values)}", node
             )
+        if isinstance(node, tree.Aggregate):
+            for item, value in zip(node.items, values, strict=True):
+                used_as(run, item, value, "number")
         return UrPose(*values)
     try:
         return checked(values)

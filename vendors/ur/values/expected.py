@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 
 from ....core.program.question import Answer
 from ..syntax.tree import Call, Expression, MethodCall, Number
@@ -23,6 +24,9 @@ EXPECTED: dict[str, Expected] = {
     "six": ("six numbers", _SIX),
 }
 """Kinds of values as an answer's, in words and by an example."""
+_OF_SIX = ("pose", "joints", "goal", "six")
+_SIX_READ = ("pose (m and rad), or six numbers", _POSE)
+"""Of what six numbers are read one by one."""
 _RECEIVED = "list: how many numbers have come, and the numbers"
 _MOST = 100
 """Numbers of an example."""
@@ -58,9 +62,28 @@ def _count(expression: Expression) -> int:
     return int(expression.value)
 
 
-def list_of(expected: Expected, depth: int) -> Expected:
-    """A list, or one of such lists, of what is expected."""
-    for _ in range(depth):
+def used(kind: str, depth: int, count: int) -> Expected:
+    """What was asked for, of which an element is used.
+
+    Args:
+        kind: of `EXPECTED`; of the element.
+        depth: indices that lead to it; 0 where the whole is used.
+        count: elements of the whole that are known to be there.
+    """
+    if (kind, depth, count) == ("number", 1, len(_SIX)):
+        return _SIX_READ
+    expected = EXPECTED[kind]
+    for level in range(depth, 0, -1):
         words, example = expected
-        expected = f"list of: {words}", (example, example)
+        expected = (
+            f"list of: {words}",
+            (example,) * (min(max(2, count), _MOST) if level == 1 else 2),
+        )
     return expected
+
+
+def vaguer(kind: str, depth: int) -> Collection[str]:
+    """Words for what may turn out to be of a kind: numbers of which more are read, or all at
+    once."""
+    more = (kind, depth) == ("number", 1) or (kind in _OF_SIX and not depth)
+    return (used("number", 1, 0)[0], _SIX_READ[0]) if more else ()

@@ -30,6 +30,7 @@ class Unknown:
             no such value.
         damaged: a line that is no statement would have set it: a move takes it for nothing.
         key: under which it was asked for, as it stands in the program; empty if it was not.
+        depth: of what was asked for it is an element: how many indices lead there.
     """
 
     reason: str
@@ -37,6 +38,7 @@ class Unknown:
     held: Value = None
     damaged: bool = False
     key: str = ""
+    depth: int = 0
 
 
 @dataclass(frozen=True, slots=True)
