@@ -62,6 +62,7 @@ class UnlistedRobotError(UnknownNameError):
         more: Iterable[str] = (),
     ) -> None:
         super().__init__("robot", name, [arm.name for arm in near])
+        self.near = tuple(near)
         offered = [f"near it are {', '.join(map(described, near))}"] if near else known
         told = "; ".join((*offered, f"{called('robots')} lists all", *more))
         self.args = (f"unknown robot {name!r}: {told}",)

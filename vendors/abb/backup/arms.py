@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from ....core.backup.contents import listed
 from ....core.door import given
 from ....core.errors import InputError, UnknownNameError
+from ....core.registry import UnlistedRobotError
 from ....core.robot.model import Robot
+from ....core.robot.model_names import words_of
 
 FindRobot = Callable[[str], Robot]
 
@@ -22,6 +24,7 @@ _TYPE = re.compile(
 _OTHER = re.compile(r"ROB(?:\d+|_?[A-Z])?_(?P<rest>(?P<model>\d+).*)", re.IGNORECASE)
 """A type that has not all of these: ``ROB1_580_16``."""
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_LENGTH = re.compile(r"\d\.\d+")
 _MODEL = re.compile(r"(?<![\w.])(\d+[A-Z]*)(?![\w.])", re.IGNORECASE)
 """The first word of a product's name with a number in it."""
 _REVISION = re.compile(r"Type_?[A-Z]\d?", re.IGNORECASE)
@@ -55,7 +58,7 @@ def find_arm(written: str, options: Sequence[str], find_robot: FindRobot) -> Fou
     refused = ""
     for name in _names(written, options):
         try:
-            robot = find_robot(name)
+            robot = _found(name, find_robot)
         except UnknownNameError:
             continue
         except InputError as error:  # it is known and cannot be driven, or several are meant
@@ -78,9 +81,35 @@ def find_arm(written: str, options: Sequence[str], find_robot: FindRobot) -> Fou
     )
 
 
+def _found(name: str, find_robot: FindRobot) -> Robot:
+    """The arm of a name; of a name that rounds the reach otherwise, the only one that it may mean.
+
+    Raises:
+        InputError: there is none, or several.
+    """
+    try:
+        return find_robot(name)
+    except UnlistedRobotError as error:
+        alike = [arm for arm in error.near if _rounded(words_of(name), words_of(arm.model))]
+        if len(alike) != 1:
+            raise
+        return find_robot(alike[0].name)
+
+
+def _rounded(asked: Sequence[str], listed_words: Sequence[str]) -> bool:
+    """Whether two names differ by the rounding of one reach (1.93 m and 1.9 m)."""
+    if len(asked) != len(listed_words):
+        return False
+    apart = [(a, b) for a, b in zip(asked, listed_words, strict=True) if a != b]
+    return len(apart) == 1 and all(
+        _LENGTH.fullmatch(a) and _LENGTH.fullmatch(b) and abs(float(a) - float(b)) < _NEAR
+        for a, b in apart
+    )
+
+
 def _near(said: str, find_robot: FindRobot) -> str:
     """Arms of the same model, with what tells them apart."""
-    found = _TYPE.fullmatch(said)
+    found = _TYPE.fullmatch(said) or _OTHER.match(said)
     model = _NUMBER.search(found["model"] if found is not None else said)
     if model is None:
         return ""

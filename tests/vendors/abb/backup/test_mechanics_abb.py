@@ -385,3 +385,31 @@ def test_types_of_old_lists_stand_without_their_series() -> None:
     assert info.arms == ("IRB 2600ID-8/2.00",)
     two = parse_backinfo(">>ROBOT_TYPE:\n1600-5/1.2\n4400-60/1.96\n")
     assert two.arms == ("IRB 1600-5/1.2", "IRB 4400-60/1.96")
+
+
+@pytest.mark.parametrize(
+    ("written", "name"),
+    [
+        ("ROB1_6660_1.93_205", "abb/irb6660-205-190"),  # a product called 205/1.9
+        ("ROB1_4600_2.51_20", "abb/irb4600-20-250"),
+        ("ROB1_1410_1.44_5", "abb/irb1410-5-145"),
+        ("ROB1_6640_2.8_205", "abb/irb6640-205-275"),
+        ("ROB1_4600_2.6_60", None),  # no sister that reaches so far carries as much
+        ("ROB1_6700_LeanID_2.65_235", None),
+    ],
+)
+def test_a_reach_may_be_rounded_otherwise_than_in_the_products_name(
+    written: str, name: str | None
+) -> None:
+    found = find_arm(written, (), find_robot)
+    assert (found.robot and found.robot.name) == name
+    if name is None:
+        assert f"near it are abb/irb{written.split('_')[1]}-" in found.lack
+
+
+def test_near_an_unknown_type_are_those_of_its_model() -> None:
+    for written in ("ROB1_1600_1.2_X", "ROB1_5500_22"):
+        assert (
+            f"near it are abb/irb{written.split('_')[1]}-" in find_arm(written, (), find_robot).lack
+        )
+    assert "near" not in find_arm("ROB1_7710_2.6_430", (), find_robot).lack
