@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,7 +59,7 @@ def identify_with(
 
     Args:
         logs: records of runs (JSON), programs with a log of the same name beside them, or folders
-            of these.
+            of these. Records say whose runs they are where no robot is named.
 
     Returns:
         The figures with their confidence intervals, how well each run is predicted before and
@@ -71,7 +71,7 @@ def identify_with(
     from ..identification.fit import outcomes
     from ..identification.fit.parameters import check_text
     from ..identification.logs import load_columns
-    from .files.logged_runs import find_runs
+    from .files.logged_runs import find_runs, robot_of_records
     from .results.identified import IdentifiedModel
 
     for text in options.parameters:
@@ -80,6 +80,8 @@ def identify_with(
         except InputError as error:
             raise OptionError(f"{spelt('parameters')}: {error}") from error
     paths = [Path(log) for log in ([logs] if isinstance(logs, str | Path) else logs)]
+    if options.robot is None and options.cell is None:
+        options = replace(options, robot=robot_of_records(paths))
     setup = setup_of(options)
     owner, arm = setup.vendor, setup.robot
     columns = None if options.columns is None else load_columns(Path(options.columns))

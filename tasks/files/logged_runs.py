@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...core.door import spelt
 from ...core.errors import InputError, OptionError
 from ..catalogue import registry
 
@@ -76,6 +77,26 @@ def find_runs(
             "the same name beside them, or folders of these"
         )
     return LoggedRuns(tuple(runs), (*files, *logs), others)
+
+
+def robot_of_records(paths: Sequence[Path]) -> str | None:
+    """The robot whose runs the records of runs are that users name; None where none names one.
+
+    Raises:
+        OptionError: they are of several robots.
+    """
+    files = [
+        file
+        for path in paths
+        for file in (sorted(path.rglob(f"*{RECORD}")) if path.is_dir() else [path])
+    ]
+    robots = sorted({one.robot for one in map(_record, files) if one is not None})
+    if len(robots) > 1:
+        raise OptionError(
+            f"the records are runs of {' and '.join(robots)}: give {spelt('robot')}, whose runs "
+            "are taken"
+        )
+    return robots[0] if robots else None
 
 
 def _in_folder(folder: Path, vendor: Vendor) -> Iterator[tuple[Path, Record | None]]:

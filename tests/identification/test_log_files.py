@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from flyby.core.errors import InputError
+from flyby.core.errors import InputError, OptionError
 from flyby.core.files.reading import read_json
 from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.zone import FINE, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.logs import load_run, read_samples, records
-from flyby.tasks.files.logged_runs import find_runs
+from flyby.tasks.files.logged_runs import find_runs, robot_of_records
 
 HOME = [0.2, -1.4, -1.8, -1.4, 1.5, 0.3]
 HEADER = "t,q1,q2,q3,q4,q5,q6"
@@ -232,3 +232,16 @@ def test_the_records_of_a_folder_are_parsed_once(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(records, "read_json", counted)
     found = find_runs([tmp_path], find_vendor(robot.name.partition("/")[0]), robot)
     assert len(found.runs) == 1 and parsed == [path]
+
+
+def test_records_say_whose_runs_they_are(tmp_path) -> None:
+    (one := tmp_path / "one").mkdir()
+    robot = load_run(write(one), find_robot).robot
+    (one / "notes.json").write_text('{"by": "me"}')
+    assert robot_of_records([one]) == robot_of_records([one, one / "x.mod"]) == robot
+    assert robot_of_records([one / "notes.json", tmp_path / "none.json"]) is None
+    (other := tmp_path / "other").mkdir()
+    write(other, {"robot": "IRB 6640-180/2.55"})
+    said = "runs of abb/irb6640-180-255 and ur/ur10e: give robot, whose"
+    with pytest.raises(OptionError, match=said):
+        robot_of_records([tmp_path])
