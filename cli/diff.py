@@ -21,6 +21,7 @@ from .parameters import AsJson, Force, PageFile, with_options
 if TYPE_CHECKING:
     from ..core.difference.differences import Difference
     from ..core.difference.texts import FileDifference
+    from ..core.program.move import Move
     from ..tasks.diff.comparing import RoutineDifference, StateDifference
 
 _NOT_COMPARED = "not compared: cycle times, driven paths, clearances, what cannot be driven"
@@ -93,20 +94,41 @@ def _for_git(paths: Sequence[str], source: SourceOptions) -> None:
     if _NOTHING in (old, new):
         print_rich("added" if old == _NOTHING else "removed")
         return
-    try:
-        with beside_others(name, old, new) as (before, after):
-            _tell(diff_with(before, after, source), markdown=False)
-    except FlybyError as error:
-        print_rich(f"not compared: {error}")
+    with beside_others(name, old, new) as (before, after):
+        try:
+            found = diff_with(before, after, source)
+        except FlybyError as error:
+            try:  # it runs nothing by itself, as data: with what lies beside it, it may
+                found = diff_with(before.parent, after.parent, source)
+            except FlybyError:
+                for state in (before, after):
+                    error = type(error)(str(error).replace(str(state), name))
+                print_rich(f"not compared: {error}")
+                return
+        _tell(found, markdown=False)
 
 
 def _list_moves(path: Path, source: SourceOptions) -> None:
-    """The moves of a program, a line each, without places in the text."""
+    """The moves of a program, a line each, without places in the text.
+
+    What has none, or cannot be read, is listed as it is: git takes an error for its own.
+    """
     from ..core.difference.data import target_text
     from ..core.difference.moves import move_text
-    from ..tasks.diff.state import program_of
+    from ..tasks.diff.state import program_of, text_of
 
-    for move in program_of(path, source).moves:
+    moves: Sequence[Move] = ()
+    why = ""
+    try:
+        moves = program_of(path, source).moves
+    except FlybyError as error:
+        if not path.is_file():
+            raise
+        why = f"not read: {str(error).replace(str(path), path.name)}"
+    if not moves:
+        text = text_of(path)
+        print_rich(*(text.splitlines() if text and "\0" not in text else filter(None, [why])))
+    for move in moves:
         at = f", at {target_text(move.target)}" if move.target.name and not move.open else ""
         print_rich(f"{move_text(move)}{at}")
 

@@ -116,7 +116,7 @@ def _of_program(path: Path, options: SourceOptions) -> StationState:
         entry = None if name == MAIN else name
         by_name = partial(read, path, replace(options, entry=entry))
         routines[name] = _read(by_name) if undriven else _driven(by_name)
-    texts = {path.name: _text(path)} if path.is_file() else {}
+    texts = {path.name: text_of(path)} if path.is_file() else {}
     for routine in routines.values():
         if path.is_file():
             texts |= _texts(routine.program, path.parent)
@@ -160,7 +160,7 @@ def _of_backup(path: Path, backup: Backup, options: SourceOptions) -> StationSta
     undriven = ""
     for task in moving:
         for file in task.files:
-            texts[file] = _text(backup.root / file)
+            texts[file] = text_of(backup.root / file)
         try:
             setup = setup_in(backup, task, options)
         except OptionError as error:
@@ -234,7 +234,8 @@ def _texts(program: Program | None, folder: Path, beside: bool = False) -> dict[
     return found
 
 
-def _text(path: Path) -> str:
+def text_of(path: Path) -> str:
+    """The text of a file, unpacked if it is packed; empty if it is none."""
     from ...core.files.reading import read_bytes
     from ...core.source.text.files import LARGEST_FILE, source_of
 

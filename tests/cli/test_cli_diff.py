@@ -94,6 +94,40 @@ def test_gits_states_have_what_lies_beside_the_file(flyby: Flyby, tmp_path: Path
     assert sorted(one.name for one in folder.iterdir()) == ["seam.dat", "seam.src"]
 
 
+def test_data_that_changed_are_compared_by_what_they_do(flyby: Flyby, tmp_path: Path) -> None:
+    """A module of data runs nothing: what lies beside it in the working tree does."""
+    folder, old = tmp_path / "tree", tmp_path / "git-blob-1"
+    station = Path("examples/station/RAPID/TASK1/PROGMOD")
+    shutil.copytree(station, folder)
+    shutil.copytree(station, old)
+    data = folder / "Data.mod"
+    data.write_text(data.read_text("latin-1").replace("[0,0,80]", "[0,0,95]"), "latin-1")
+    words = (data, old / "Data.mod", "a1", "100644", data, "a2", "100644")
+    result = flyby("diff", "--robot", "abb/irb120-3-058", *words)
+    assert result.exit_code == 0 and "not compared" not in result.stdout
+    (tool,) = [line for line in result.stdout.splitlines() if "tGrip" in line]
+    assert "15.000" in tool
+    (folder / "MainModule.mod").unlink()
+    alone = flyby("diff", "--robot", "abb/irb120-3-058", *words).stdout
+    assert f"not compared: {data}:1:1: no routine in it can be run" in alone
+
+
+def test_what_lists_no_moves_is_listed_as_it_is(flyby: Flyby, tmp_path: Path) -> None:
+    """Git stops at a textconv that fails, with all files that are still to come."""
+    text = "MODULE Data\n  PERS num nCount:=3;\nENDMODULE\n"
+    broken = "MODULE Main\n  PROC main(\n  <<<<<<< HEAD\n"
+    for name, content in (("Data.mod", text), ("Broken.mod", broken), ("seam.dat", "DEFDAT A\n")):
+        (tmp_path / name).write_text(content, "utf-8")
+        result = flyby("diff", tmp_path / name)
+        assert result.exit_code == 0, result.output
+        assert result.stdout.splitlines() == content.splitlines()
+    for data in (bytes(range(256)), b"\x1f\x8b\x08 cut short"):
+        (tmp_path / "a.urp").write_bytes(data)
+        result = flyby("diff", tmp_path / "a.urp")
+        assert result.exit_code == 0 and result.stdout.startswith("not read: a.urp: ")
+    assert flyby("diff", tmp_path / "gone.mod").exit_code != 0
+
+
 @pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
 def test_git_calls_it(both: tuple[Path, Path], tmp_path: Path) -> None:
     folder = tmp_path / "repository"
