@@ -115,9 +115,19 @@ class FilePlaces:
 
 
 def _backup_of(files: Files, original: Program) -> Backup | None:
-    """The backup that a program was read of, if all its changed files are of it."""
+    """The backup that a program was read of, or that its file is, as a ``.urp`` for a robot that
+    was named, if all its changed files are of it."""
+    from ...core.source.patch.edits import reading_of
+    from ..backup.finding import find_backup
+    from ..catalogue import registry
+
+    if not files:
+        return None
     backup = getattr(original.setup, "backup", None)
-    if backup is None or not files:
+    main = Path(reading_of(original).main)
+    if backup is None and main.is_file():
+        backup = find_backup(main, registry(), marked=True)
+    if backup is None:
         return None
     own = all(Path(file.name).is_relative_to(backup.root) for file in files.values())
     return backup if own else None

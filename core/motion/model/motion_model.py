@@ -204,6 +204,14 @@ class MotionModel:
         always=True,
         fit=FitRange(),
     )
+    tcp_speed: float | None = figure(
+        "limit.tcp_speed",
+        RealNumber(POSITIVE, optional=True),
+        Stage.TIMING,
+        "greatest speed of the TCP, whatever the program states; of moves with a time as well",
+        unit="m/s",
+        default=None,
+    )
     # Where corners of superposed legs are too sharp for their speed, it makes blends smaller.
     tcp_acceleration: float | None = figure(
         "limit.tcp_acceleration",

@@ -176,7 +176,8 @@ def _limits(
         acceleration.append(_least(*limits))
     # A programmed duration takes the place of the speeds (RAPID \\T, URScript t).
     timed = speed.duration is not None
-    velocity.append(_given(None if timed else speed.tcp, "tcp"))
+    most = math.inf if model.tcp_speed is None else model.tcp_speed
+    velocity.append(_least(_given(None if timed else speed.tcp, "tcp"), (most, None)))
     velocity.append(_given(None if timed else speed.reorientation, "reorientation"))
     if kind == JOINT_SEGMENT:
         return velocity, [*acceleration, (math.inf, None), (math.inf, None)]

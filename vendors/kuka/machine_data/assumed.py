@@ -17,6 +17,8 @@ _TIMES = (
     (-3.701, 0.669, -0.401),
 )
 _SHORTEST_REACH = 0.1
+SPREAD = 1.9
+"""Factor within which accelerations of those arms are of these."""
 
 
 def starting_times(payload: float, reach: float) -> list[float]:

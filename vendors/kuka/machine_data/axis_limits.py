@@ -7,7 +7,8 @@ Of axis i, external ones from 7 on, in degrees (mm, if it is linear):
   the motor, D of the axis, or of 1000 mm}: 6 · $VEL_AXIS_MA · D / |N| degrees/s;
 - acceleration: ``$AXIS_JERK[i]`` · ``$DEF_FLT_PTP`` / 20 (degrees/s³, s), inferred: it is what is
   published of a KR 6 R900 for all axes, and within 7 % of what is of two larger arms. KR C2, which
-  has no such datum, comes to full speed within ``$RAISE_TIME[i]`` ms.
+  has no such datum, comes to full speed within ``$RAISE_TIME[i]`` ms, unless its dynamic model says
+  otherwise (``$ADAP_ACC``): by how much it does is not published.
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ from typing import NamedTuple
 
 from ....core.errors import InputError
 from ..data_list import DataList, numbers_of
+from .assumed import SPREAD
 from .geometry import AXES, LINEAR
 
 RULE = "$AXIS_JERK · $DEF_FLT_PTP / 20, inferred"
-RULE_SPREAD = 1.07
-"""Factor by which it is off at most, of the three arms of which accelerations are published."""
 RULE_C2 = "full speed within $RAISE_TIME"
+RULE_SPREAD = {RULE: 1.07, RULE_C2: SPREAD}
+"""Factor by which accelerations are off: at most, of the three arms of which they are published; of
+a KR C2, of which none are, as where nothing is stated."""
 
 
 class AxisLimits(NamedTuple):

@@ -15,9 +15,8 @@ from ....core.robot.model import Robot
 from ....core.robot.shape import LinkShape
 from ....core.spatial.pose import IDENTITY, Pose
 from ..data_list import DataList
-from .assumed import starting_times
+from .assumed import SPREAD, starting_times
 from .axis_limits import (
-    RULE,
     RULE_SPREAD,
     AxisLimits,
     acceleration_rule,
@@ -276,15 +275,13 @@ def _said(robot: Robot, data: DataList, limits: Sequence[AxisLimits]) -> Robot:
     if all(limit.acceleration is not None for limit in limits):
         rule = acceleration_rule(data)
         origins["acceleration"] = f"computed: {Path(data.name).name} of its controller ({rule})"
-        spread.pop("acceleration", None)
-        if rule == RULE:
-            spread["acceleration"] = RULE_SPREAD
+        spread["acceleration"] = RULE_SPREAD[rule]
     elif "acceleration" not in origins:
         origins["acceleration"] = (
             "assumed: times to top speed of 39 arms of the maker, by payload and reach "
-            "(docs/reference/robots.md), within a factor 1.9"
+            f"(docs/reference/robots.md), within a factor {SPREAD:g}"
         )
-        spread["acceleration"] = 1.9
+        spread["acceleration"] = SPREAD
     return replace(robot, origins=origins, spread=spread)
 
 

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 from ....core.backup.backup import Backup, BackupEntry, BackupRobot, Task
 from ....core.errors import InputError, Note
@@ -23,6 +24,8 @@ from .contents import PASSED_OVER, Contents, Found, marked_below, read_contents
 from .declared import frames_of, homes_of, signals_of, tools_of
 
 VENDOR = "ur"
+_FASTEST = 100.0
+"""m/s, beyond which a limit is none."""
 _NAMED = 6
 """Files that a note names at most."""
 
@@ -54,6 +57,7 @@ def _backup(source: Path, contents: Contents, types: Types) -> Backup:
     robots, indices = _robots(contents, main, types, doubts)
     declared = contents.installations.get(main or "", Installation())
     notes = [*contents.notes, *_told(contents, main), *map(Note, dict.fromkeys(doubts))]
+    motion = _motion(contents, notes)
     base = next((one.robot.base for one in robots if one.robot is not None), IDENTITY)
     return Backup(
         source=source,
@@ -67,8 +71,29 @@ def _backup(source: Path, contents: Contents, types: Types) -> Backup:
         frames=frames_of(declared, base),
         homes=homes_of(declared),
         signals=signals_of(declared),
+        motion=motion,
         notes=tuple(notes),
     )
+
+
+def _motion(contents: Contents, notes: list[Note]) -> dict[str, tuple[Any, str]]:
+    """What limits of safety say of how fast the arm is driven: the controller slows down where the
+    TCP would be faster."""
+    used = {one.installation for one in contents.programs if one.installation}
+    stated = {
+        installation.tcp_speed: name
+        for name, installation in contents.installations.items()
+        if name in used or not used
+    }
+    speeds = [one for one in stated if one is not None and 0.0 < one < _FASTEST]
+    if len(stated) > 1 and speeds:
+        told = " and ".join("none" if one is None else f"{one:g} m/s" for one in stated)
+        notes.append(Note(f"the greatest speed of the TCP is not held: installations say {told}"))
+    if len(stated) != 1 or not speeds:
+        return {}
+    (speed,) = speeds
+    said = f"published: {stated[speed]}, limits of safety: maxTcpSpeed {speed:g} m/s"
+    return {"limit.tcp_speed": (speed, said)}
 
 
 def _main_installation(contents: Contents) -> str | None:

@@ -88,6 +88,9 @@ def test_kr_c2_states_the_time_to_full_speed(tmp_path) -> None:
     robot = with_machine_data(KR3, write(tmp_path, "$machine.dat", text))
     assert robot.joints[0].acceleration == pytest.approx(robot.joints[0].velocity / 0.4)
     assert "$RAISE_TIME" in robot.origins["acceleration"]
+    # By how much the dynamic model departs from it is not published.
+    later = with_machine_data(KR3, write(tmp_path, "$machine.dat", machine_data(KR3, "#KR3")))
+    assert robot.spread["acceleration"] > later.spread["acceleration"] > 1.0
 
 
 @pytest.mark.parametrize(

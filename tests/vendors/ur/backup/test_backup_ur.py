@@ -17,6 +17,7 @@ import flyby
 from flyby.core.backup.backup import Backup, SignalKind
 from flyby.core.errors import FlybyError, InputError, OptionError
 from flyby.core.registry import find_robot
+from flyby.drawing.geometry import tcp_speed
 from flyby.vendors.ur.backup.opener import OPENER
 from flyby.vendors.ur.calibration import apart, calibrated, nominal_table, type_of
 from flyby.vendors.ur.urp.kinematics import DhTable
@@ -91,9 +92,23 @@ def test_a_folder_is_read_without_a_robot(build: Build, tmp_path: Path) -> None:
         ("force", SignalKind.ANALOG_INPUT, "analog_in[0]"),
     ]
     assert not backup.notes
+    assert backup.motion["limit.tcp_speed"][0] == 1.5
     program = flyby.read(tmp_path / "work")
     assert len(program.moves) == 2 and program.setup is not None
     assert program.setup.robot == known.robot
+
+
+def test_a_greatest_speed_of_the_tcp_is_held_where_it_is_one(build: Build, tmp_path: Path) -> None:
+    slow = SAFETY.replace("maxTcpSpeed = 1.5", "maxTcpSpeed = 0.1")
+    build.packed(tmp_path / "default.installation", build.installation(slow))
+    build.packed(tmp_path / "a.urp", build.program(move(build)))
+    run = flyby.emulate(flyby.read(tmp_path, task="a"))
+    assert float(tcp_speed(run).max()) == pytest.approx(0.1, rel=1e-3)
+    build.packed(tmp_path / "fast.installation", build.installation(SAFETY))
+    build.packed(tmp_path / "b.urp", build.program(move(build), installation="fast"))
+    backup = opened(tmp_path)
+    assert not backup.motion
+    assert any("installations say 0.1 m/s and 1.5 m/s" in note.message for note in backup.notes)
 
 
 def test_one_file_is_opened_alone_with_its_installation(build: Build, tmp_path: Path) -> None:
@@ -113,16 +128,17 @@ def test_one_file_is_opened_alone_with_its_installation(build: Build, tmp_path: 
         flyby.read(tmp_path, entry="Gone 1")
 
 
+@pytest.mark.parametrize("robot", [None, "ur/ur5e"])
 @pytest.mark.parametrize("place", ["default.installation", "../cell.installation"])
 def test_the_copy_of_one_file_has_what_it_is_read_with(
-    build: Build, tmp_path: Path, place: str
+    build: Build, tmp_path: Path, place: str, robot: str | None
 ) -> None:
     folder = tmp_path / "programs"
     beside = build.packed(folder / place, build.installation())
     named = place.removesuffix(".installation")
     build.packed(folder / "job.urp", build.program(move(build), installation=named))
     build.packed(folder / "other.urp", build.program(move(build)))
-    program = flyby.read(folder / "job.urp")
+    program = flyby.read(folder / "job.urp", robot=robot)
     slower = [replace(one, speed=replace(one.speed, joint=0.5)) for one in program.moves]
     (made,) = flyby.patch(program.with_moves(tuple(slower)), out=tmp_path / "copy")
     assert made == tmp_path / "copy/job.urp"
