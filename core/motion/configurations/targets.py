@@ -52,9 +52,10 @@ class Targets:
         self.solved = np.array([j for j in arm if j not in redundant], dtype=np.int64)
         self.prescribed = np.array([*redundant, *range(len(arm), robot.size)], dtype=np.int64)
         self.redundant = redundant[0] if redundant else None
-        self._full_turn = np.array(
-            [2 * np.pi if j.kind is JointKind.REVOLUTE else 0.0 for j in robot.joints]
-        )
+        turns = [1.0 if j.kind is JointKind.REVOLUTE else 0.0 for j in robot.joints]
+        self._full_turn = 2 * np.pi * np.array(turns)
+        limits = robot.limits
+        self._lower, self._upper = (one[: len(turns)] for one in (limits.lower, limits.upper))
 
     def rest(self) -> FloatArray:
         """All axes at zero, or at the limit nearest to it."""
@@ -139,6 +140,8 @@ class Targets:
             turned = self._nearest_turns(found, before[:arm])
         else:
             turned = np.concatenate([self.robot.turns(solution) for solution in found])
+        if arm == len(q):
+            return turned
         options = np.empty((len(turned), len(q)))
         options[:, :arm], options[:, arm:] = turned, q[arm:]
         return options
@@ -194,10 +197,8 @@ class Targets:
     def _nearest_turns(self, q: FloatArray, before: FloatArray) -> FloatArray:
         """Of the arm's configurations whole turns away from each of q (K, n), the one nearest to
         ``before``."""
-        limits = self.robot.limits
-        size = q.shape[1]
-        turned = q + self._full_turn * np.round((before - q) / (2 * np.pi))
-        beyond = (turned < limits.lower[:size]) | (turned > limits.upper[:size])
+        turned = q + self._full_turn * np.rint((before - q) / (2 * np.pi))
+        beyond = (turned < self._lower) | (turned > self._upper)
         if beyond.any():
             for k in np.flatnonzero(beyond.any(axis=1)):
                 options = self.robot.turns(q[k])

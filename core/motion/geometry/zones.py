@@ -66,6 +66,9 @@ class ZonePlanner:
         self._kept: dict[int, Reach] = {}
         self._wanted: tuple[Sequence[Zone], list[Reaches]] = (), []
         self._known_ways: dict[float, NeighbourWays] = {}
+        half = model.overlap is Overlap.HALF
+        self._furthest = Reach(model.neighbour_fraction if half else 1.0)
+        """Share of the way to a neighbouring point beyond which no zone reaches."""
 
     def corners(self, zones: Sequence[Zone]) -> Corners:
         """The corners at the inner waypoints.
@@ -157,7 +160,7 @@ class ZonePlanner:
         Returns:
             None where the TCP stands still on both sides, so that a radius says nothing.
         """
-        neighbours = self._neighbours(min(most, self._furthest))
+        neighbours = self._neighbours(min(most, self._furthest.value))
         ways = [neighbours.way(segment, i) for segment in (i, i + 1)]
         return min((way.value for way in ways if way is not None), default=None)
 
@@ -174,11 +177,6 @@ class ZonePlanner:
         halves = [self._half(segment, i) for segment in (i, i + 1)]
         less = Reach(-zone.tcp, (("tcp", i, -1.0),))
         return [Room(half + less, i) for half in halves if half is not None]
-
-    @property
-    def _furthest(self) -> float:
-        """Share of the way to a neighbouring point beyond which no zone reaches."""
-        return self._model.neighbour_fraction if self._model.overlap is Overlap.HALF else 1.0
 
     def _kind(self, i: int) -> int:
         joint = self._kinds[i : i + 2].count(JOINT_SEGMENT)
@@ -313,7 +311,7 @@ class ZonePlanner:
             if length < STILL:
                 return Reach(0.0)
             way = way / Reach(length, (("length", segment, 1.0),))
-        return least(way, Reach(self._furthest))
+        return least(way, self._furthest)
 
     def _rates(self, segment: int, corner: int, zone: VendorZone) -> tuple[Reach, Reach]:
         """Speed and acceleration of a segment: m/s and m/s², in shares of the line of a joint
@@ -372,7 +370,7 @@ class ZonePlanner:
 
     def _exit(self, segment: int, corner: int, size: Reach, angle: float) -> Reach:
         """Share of a segment inside the sphere round the waypoint of ``corner``."""
-        kind, length, limit = self._kinds[segment], self._lengths[segment], Reach(self._furthest)
+        kind, length, limit = self._kinds[segment], self._lengths[segment], self._furthest
         if kind == JOINT_SEGMENT:
             return self._joint_exit(segment, corner, size, limit)
         if length < STILL:

@@ -46,14 +46,25 @@ class Nominal:
 
     Attributes:
         segments, curves: on which segment k spans σ from k to k + 1.
+        samples: on the way, one segment after the other.
+        first: (M + 1,), the first of each segment's samples, and how many there are.
     """
 
     def __init__(self, chain: Chain, moves: Sequence[int], ends: Ends) -> None:
         self.chain = chain
         self.moves = moves
         self._ends = ends
-        self.segments: Segments = make_segments(ends)
-        self.curves: TcpCurves = _curves(self.segments)
+        self.segments: Segments
+        self.curves: TcpCurves
+        self.samples: Samples
+        self.first: IntArray
+        self._lead()
+
+    def _lead(self) -> None:
+        """Lead the segments from end to end."""
+        self.segments = make_segments(self._ends)
+        self.curves = _curves(self.segments)
+        self.samples, self.first = _steps(self.segments)
 
     def turn_round(self, k: int) -> bool:
         """Turn the tool the other way round on a segment; False where that is another way."""
@@ -65,8 +76,7 @@ class Nominal:
         ends.rotation[k, 1] = ends.rotation[k, 0] @ other
         if k + 1 < len(ends.kind):
             ends.rotation[k + 1, 0] = ends.rotation[k, 1]
-        self.segments = make_segments(ends)
-        self.curves = _curves(self.segments)
+        self._lead()
         return True
 
 
@@ -123,8 +133,9 @@ class PathFollower:
                 f"{self._robot.name} has {self._robot.arm_size} joints; only arms with six or "
                 "seven can follow a path of the TCP",
             )
-        segments = nominal.segments
-        samples, last = _steps(segments, which)
+        segments, begin, end = nominal.segments, which.start, which.stop
+        samples = nominal.samples.rows(int(nominal.first[begin]), int(nominal.first[end]))
+        last = (nominal.first[begin + 1 : end + 1] - nominal.first[begin] - 1).tolist()
         states = States.zeros(len(samples.sigma), self._robot.size)
         failed, short, reached = sample_tcp(
             nominal.chain,
@@ -137,10 +148,10 @@ class PathFollower:
             states,
             np.ones(len(samples.sigma)),
         )
-        for k, end in zip(which, last, strict=True):
+        for k, at in zip(which, last, strict=True):
             i = nominal.moves[k]
             segments.ends.q[k, 0] = q
-            if 0 <= failed <= end:
+            if 0 <= failed <= at:
                 near = states.q[failed]
                 length = float(segments.length[k])
                 reason = self._targets.why_unreachable(moves[i], q) if short > CONVERGED else None
@@ -150,7 +161,7 @@ class PathFollower:
                 raise located(
                     moves[i], i, *why_stranded(self._robot, near, reached - k, length, short)
                 )
-            q = segments.ends.q[k, 1] = states.q[end].copy()
+            q = segments.ends.q[k, 1] = states.q[at].copy()
             self._finder.check_arrival(moves[i], i, q)
         return q
 
@@ -162,15 +173,14 @@ def _curves(segments: Segments) -> TcpCurves:
     return make_tcp_curves(Layout.of(unit, corners), PARABOLA, PARABOLA).curves
 
 
-def _steps(segments: Segments, which: range) -> tuple[Samples, IntArray]:
-    """Samples on the nominal paths of segments in a row, and the last of each."""
-    rows = slice(which.start, which.stop)
-    turns = np.linalg.norm([segments.turn_a[rows], segments.turn_b[rows]], axis=2).sum(axis=0)
-    finest = np.maximum(segments.length[rows] / 0.1, segments.angle[rows] / 0.2)
+def _steps(segments: Segments) -> tuple[Samples, IntArray]:
+    """Samples on the nominal paths of segments; see `Nominal`."""
+    turns = np.linalg.norm([segments.turn_a, segments.turn_b], axis=2).sum(axis=0)
+    finest = np.maximum(segments.length / 0.1, segments.angle / 0.2)
     steps = 1 + np.maximum(finest, turns / 0.2).astype(np.int64)
     counts = steps + 1
-    behind = np.cumsum(counts)
-    owner = np.repeat(np.arange(which.start, which.stop), counts)
-    own = np.arange(behind[-1]) - np.repeat(behind - counts, counts)
+    first = np.concatenate([[0], np.cumsum(counts)])
+    owner = np.repeat(np.arange(len(counts)), counts)
+    own = np.arange(first[-1]) - np.repeat(first[:-1], counts)
     sigma = owner + own / np.repeat(steps, counts)
-    return Samples(sigma, owner, owner, owner), behind - 1
+    return Samples(sigma, owner, owner, owner), first
