@@ -96,6 +96,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "time.in_position_rad": (3e-3, SWIFT),
     "time.in_position_time_s": (0.06, SWIFT),
     "time.jerk": (25.0, JERK),
+    "limit.tcp_speed": (0.1, {}),
     "limit.tcp_acceleration": (3.5, CORNERS),
     "limit.reorientation_acceleration": (2.0, {}),
     "limit.centripetal": (1.5, CORNERS),
