@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ..errors import Span
 from ..program.signal import Level, Meet, SetSignal, WaitSignal, levels
 from .actions import Action
 from .clock import Spell, StationClock, StationRun
+from .gates import Gate, GateKind, Input
 from .plc import PLC
-from .station import RobotStation, signal_key
+from .station import RobotStation, levels_at_start, signal_key
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,24 +98,27 @@ def _reason(
             name, action, spell.begin, tuple(lacking), f"{head} for {tail}{_behind(last)}"
         )
     assert isinstance(action.does, WaitSignal)
-    wanted = list(levels(action.does.condition))
-    setters: dict[str, None] = {}
-    for level in wanted:
-        for key, on in _sources(station, signal_key(f"{name}.{level.name}"), level.on, set()):
-            setters |= dict.fromkeys(_who_will(actions, run, key, on))
+    now = _levels(station, run)
+    missing = [
+        level
+        for level in levels(action.does.condition)
+        if now.get(signal_key(f"{name}.{level.name}"), False) != level.on
+    ]
+    keys: dict[tuple[str, bool], None] = {}
+    for level in missing:
+        _sources(station, signal_key(f"{name}.{level.name}"), level.on, now, keys)
+    setters = {who: None for key, on in keys for who in _who_will(actions, run, key, on)}
+    if len(setters) > 1:
+        # What it would do itself behind the wait helps nobody.
+        setters.pop(name, None)
     if not setters:
-        keys = {
-            source
-            for level in wanted
-            for source in _sources(station, signal_key(f"{name}.{level.name}"), level.on, set())
-        }
         last = [_last(other, doings, keys) for other, doings in actions.items() if other != name]
-        said = f"{head}: nobody {_would(wanted)} any more{_behind(last)}"
+        said = f"{head}: nobody {_would(missing)} any more{_behind(last)}"
         return Reason(name, action, spell.begin, (), said)
     return Reason(name, action, spell.begin, tuple(setters), f"{head} for {', '.join(setters)}")
 
 
-def _last(robot: str, actions: Sequence[Action], what: Meet | set[tuple[str, bool]]) -> str:
+def _last(robot: str, actions: Sequence[Action], what: Meet | Collection[tuple[str, bool]]) -> str:
     """A robot's last meeting of a name, or the last that it does to signals, with its line."""
     for action in reversed(actions):
         does = action.does
@@ -162,23 +166,53 @@ def _meetings(actions: Sequence[Action], meet: Meet) -> int:
     return sum(isinstance(a.does, Meet) and a.does.label == meet.label for a in actions)
 
 
+def _levels(station: RobotStation, run: StationRun) -> dict[str, bool]:
+    """What signals are when nobody goes on any more, by their keys."""
+    now = dict.fromkeys(levels_at_start(station), True)
+    return now | {change.name: change.on for change in run.changes}
+
+
 def _sources(
-    station: RobotStation, key: str, on: bool, seen: set[tuple[str, bool]]
-) -> Iterator[tuple[str, bool]]:
-    """Signals and their values so that one gets its own: back along wires and gates."""
-    if (key, on) in seen:
+    station: RobotStation,
+    key: str,
+    on: bool,
+    now: Mapping[str, bool],
+    found: dict[tuple[str, bool], None],
+) -> None:
+    """Signals and their values that lack so that one gets its own: back along wires and gates.
+
+    Args:
+        station: with its wires and gates.
+        key, on: the signal, and the value.
+        now: what signals are.
+        found: gets them.
+    """
+    if (key, on) in found:
         return
-    seen.add((key, on))
-    yield key, on
+    found[key, on] = None
     for wire in station.wires:
         if signal_key(wire.target) == key:
-            yield from _sources(station, signal_key(wire.source), on, seen)
+            _sources(station, signal_key(wire.source), on, now, found)
     for name, gate in station.gates.items():
         if signal_key(f"{PLC}.{name}") == key:
-            for one in gate.inputs:
-                yield from _sources(station, signal_key(one.name), one.on == on, seen)
-            for one in gate.resets:
-                yield from _sources(station, signal_key(one.name), one.on != on, seen)
+            for one, holds in _wanted(gate, on):
+                source = signal_key(one.name)
+                level = one.on == holds
+                counted = gate.kind is GateKind.COUNTER and one in gate.inputs
+                # What is counted has to come again, though it is there.
+                if counted or now.get(source, False) != level:
+                    _sources(station, source, level, now, found)
+
+
+def _wanted(gate: Gate, on: bool) -> Iterator[tuple[Input, bool]]:
+    """Inputs of a gate, and whether they have to hold so that it becomes what it is not."""
+    if on:
+        yield from ((one, True) for one in gate.inputs)
+        yield from ((one, False) for one in gate.resets)
+    elif gate.resets:
+        yield from ((one, True) for one in gate.resets)
+    else:
+        yield from ((one, False) for one in gate.inputs)
 
 
 def _who_will(
@@ -200,15 +234,16 @@ def _who_will(
 
 
 def _cycle(waits_for: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
-    """Robots in a ring, each waiting for the next."""
+    """Robots in a ring, each waiting for the next, the shortest."""
+    rings: list[tuple[str, ...]] = []
     for first in waits_for:
-        path, at = [first], first
-        while True:
-            nexts = [other for other in waits_for.get(at, ()) if other in waits_for]
-            if not nexts:
-                break
-            at = nexts[0]
-            if at in path:
-                return tuple(path[path.index(at) :])
-            path.append(at)
-    return ()
+        paths: list[tuple[str, ...]] = [(first,)]
+        seen = {first}
+        for path in paths:
+            for other in waits_for.get(path[-1], ()):
+                if other == first:
+                    rings.append(path)
+                elif other in waits_for and other not in seen:
+                    seen.add(other)
+                    paths.append((*path, other))
+    return min(rings, key=len, default=())

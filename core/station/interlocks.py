@@ -26,9 +26,10 @@ class Saving:
 
     Args:
         robot: whose program it is.
-        action: the wait that could go, or the output that could be set earlier.
+        action: the wait that could go, or the output that could be set earlier, the first time that
+            its statement is carried out; it is proven for all times.
         earlier: s of the robot's own time by which it could be; None for a wait that could go.
-        place: m of the TCP's path before where it is set now.
+        place: m of the TCP's path before where it is set now, the least of all times.
         seconds: that the station would be quicker.
     """
 
@@ -78,50 +79,54 @@ class _Search:
     def waits(self) -> Iterator[Saving]:
         """Waits without which the robots keep clear all the same."""
         for name, doings in self.actions.items():
-            for k, action in enumerate(doings):
-                if not isinstance(action.does, WaitSignal):
-                    continue
-                without = {**self.actions, name: (*doings[:k], *doings[k + 1 :])}
+            for passes in _statements(doings, WaitSignal):
+                left = tuple(a for k, a in enumerate(doings) if k not in passes)
+                without = {**self.actions, name: left}
                 seconds = self._quicker(without)
                 if seconds <= _LEAST:
                     continue
                 orders = explore(self.station, without)
                 if not orders.stuck and self._clear(name, orders, without):
-                    yield Saving(name, action, None, 0.0, seconds)
+                    yield Saving(name, doings[passes[0]], None, 0.0, seconds)
 
     def outputs(self, orders: Orders) -> Iterator[Saving]:
         """Outputs that others wait for, and that could be set earlier."""
         wanted = awaited(self.station, self.actions)
         for name, doings in self.actions.items():
-            for k, action in enumerate(doings):
-                if not isinstance(action.does, SetSignal):
-                    continue
+            for passes in _statements(doings, SetSignal):
+                action = doings[passes[0]]
+                assert isinstance(action.does, SetSignal)
                 if signal_key(f"{name}.{action.does.name}") not in wanted:
                     continue
-                begin = doings[k - 1].time if k else 0.0
-                if self._quicker(self._moved(name, k, begin)) <= _LEAST:
+                # The order of actions stays as it is, in every pass.
+                most = min(doings[k].time - (doings[k - 1].time if k else 0.0) for k in passes)
+                if self._quicker(self._moved(name, passes, most)) <= _LEAST:
                     continue
-                time = self._earliest(name, k, begin, orders)
-                if time < action.time - _LEAST:
-                    seconds = self._quicker(self._moved(name, k, time))
-                    place = self._way(name, time, action.time)
-                    yield Saving(name, action, action.time - time, place, seconds)
+                earlier = self._most(name, passes, most, orders)
+                if earlier > _LEAST:
+                    seconds = self._quicker(self._moved(name, passes, earlier))
+                    times = [doings[k].time for k in passes]
+                    place = min(self._way(name, time - earlier, time) for time in times)
+                    yield Saving(name, action, earlier, place, seconds)
 
-    def _earliest(self, name: str, k: int, begin: float, orders: Orders) -> float:
-        """The earliest own time, s, found by halving what is not proven."""
-        low, high = begin, self.actions[name][k].time
+    def _most(self, name: str, passes: Sequence[int], most: float, orders: Orders) -> float:
+        """s by which a statement can come earlier, found by halving what is not proven."""
+        low, high = 0.0, most
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
-            if self._clear(name, orders, self._moved(name, k, middle)):
-                high = middle
-            else:
+            if self._clear(name, orders, self._moved(name, passes, middle)):
                 low = middle
-        return high
+            else:
+                high = middle
+        return low
 
-    def _moved(self, name: str, k: int, time: float) -> dict[str, tuple[Action, ...]]:
-        doings = self.actions[name]
-        moved = (*doings[:k], replace(doings[k], time=time, earliest=None), *doings[k + 1 :])
-        return {**self.actions, name: moved}
+    def _moved(
+        self, name: str, passes: Sequence[int], earlier: float
+    ) -> dict[str, tuple[Action, ...]]:
+        doings = list(self.actions[name])
+        for k in passes:
+            doings[k] = replace(doings[k], time=doings[k].time - earlier, earliest=None)
+        return {**self.actions, name: tuple(doings)}
 
     def _clear(self, name: str, orders: Orders, actions: Actions) -> bool:
         """Whether a robot keeps clear of all others, if its actions are these."""
@@ -140,3 +145,15 @@ class _Search:
         steps = np.linalg.norm(np.diff(trajectory.position, axis=0), axis=1)
         way = np.append(0.0, np.cumsum(steps))
         return float(np.interp(end, trajectory.t, way) - np.interp(begin, trajectory.t, way))
+
+
+def _statements(
+    doings: Sequence[Action], kind: type[SetSignal] | type[WaitSignal]
+) -> Iterator[list[int]]:
+    """Indices of the actions of a kind, those of one statement together: who changes a line changes
+    it for every pass of its loop, and for every call of its routine."""
+    found: dict[object, list[int]] = {}
+    for k, action in enumerate(doings):
+        if isinstance(action.does, kind):
+            found.setdefault(k if action.span is None else (action.span, action.text), []).append(k)
+    yield from found.values()

@@ -9,7 +9,6 @@ deadlocks that may happen.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -116,27 +115,47 @@ class _Explorer:
             (0,) * len(self._gates),
         )
         unseen = [False] * len(self._gates)
-        queue, seen = deque([self._settled(first, first.levels, unseen)]), set()
-        seen.add(queue[0])
-        stuck: list[tuple[int, ...]] = []
-        while queue:
-            state = queue.popleft()
-            moved = False
+        first = self._settled(first, first.levels, unseen)
+        states, numbers = [first], {first: 0}
+        before: list[list[int]] = [[]]
+        for k, state in enumerate(states):
             for after in self._successors(state):
-                moved = True
-                if after not in seen:
-                    if len(seen) >= _MOST_STATES:
+                if after not in numbers:
+                    if len(states) >= _MOST_STATES:
                         raise InputError(
                             f"the programs' actions can come in more than {_MOST_STATES:,} orders: "
                             "what their interlocks allow is not looked at; clearances in time are"
                         )
-                    seen.add(after)
-                    queue.append(after)
-            ends = tuple(map(len, self._actions))
-            if not moved and state.at != ends and state.at not in stuck:
-                stuck.append(state.at)
+                    numbers[after] = len(states)
+                    states.append(after)
+                    before.append([])
+                if after != state:
+                    before[numbers[after]].append(k)
         actions = dict(zip(self._names, self._actions, strict=True))
-        return Orders(actions, frozenset(s.at for s in seen), tuple(stuck), len(seen))
+        stuck = self._stuck(states, before)
+        return Orders(actions, frozenset(s.at for s in states), stuck, len(states))
+
+    def _stuck(
+        self, states: Sequence[_State], before: Sequence[Sequence[int]]
+    ) -> tuple[tuple[int, ...], ...]:
+        """How far robots are where none ever goes on, whatever signals still do.
+
+        Args:
+            states: that are reachable.
+            before: of each, which states it comes behind.
+        """
+        ends = tuple(map(len, self._actions))
+        alive = [False] * len(states)
+        left = [k for k, state in enumerate(states) if state.at == ends]
+        for after, earlier in zip(states, before, strict=True):
+            left += [k for k in earlier if states[k].at != after.at]
+        while left:
+            k = left.pop()
+            if not alive[k]:
+                alive[k] = True
+                left += before[k]
+        dead = (state.at for state, lives in zip(states, alive, strict=True) if not lives)
+        return tuple(dict.fromkeys(dead))
 
     def _successors(self, state: _State) -> Iterator[_State]:
         for k, pending in enumerate(state.pending):

@@ -57,6 +57,41 @@ def test_two_that_wait_for_each_other_are_a_deadlock_with_its_cycle(write: Write
     assert math.isinf(made.duration) and made.may_lock
 
 
+LOCKS = "".join(
+    f'[logic.{own}{k}]\nand = ["{own}.do{k}", "not plc.{other}{k}"]\nto = "{own}.di{k}"\n'
+    for own, other in (("one", "two"), ("two", "one"))
+    for k in "12"
+)
+"""Of two things, each for the one that asks first."""
+
+
+@pytest.mark.parametrize("swings", [False, True])
+def test_who_takes_two_things_in_other_orders_may_lock(write: Write, swings: bool) -> None:
+    """One takes the first and the second, two the other way round."""
+    programs = {
+        name: [
+            "go 0",
+            f"SetDO do{first},1",
+            f"WaitDI di{first},1",
+            "go 1",
+            f"SetDO do{second},1",
+            f"WaitDI di{second},1",
+            "go 2",
+            "SetDO do1,0",
+            "SetDO do2,0",
+        ]
+        for name, first, second in (("one", 1, 2), ("two", 2, 1))
+    }
+    blinks = '[logic.blink]\ntimer = { of = "not plc.blink", after_ms = 500 }\n'
+    file = write(programs, LOCKS + blinks * swings)
+    both = station(file)
+    assert both.deadlock is not None and both.deadlock.cycle == ("one", "two")
+    assert "s on for two; two waits" in str(both.deadlock)
+    file.write_text(file.read_text().replace('"two.mod"\n', '"two.mod"\nbegins_s = 20\n'))
+    apart = station(file)
+    assert apart.deadlock is None and apart.may_lock
+
+
 def test_what_nobody_sets_any_more_is_said(write: Write) -> None:
     made = station(
         write(
@@ -273,6 +308,21 @@ def test_a_wait_that_protects_nothing_can_go(write: Write) -> None:
         interlocks=True,
     )
     assert made.clear and any(s.earlier is None and s.robot == "two" for s in made.savings)
+
+
+def test_a_wait_can_go_only_if_it_can_in_every_pass(write: Write) -> None:
+    """Who takes the line out takes it out of both passes; only the first could do without."""
+    turned = "MoveAbsJ [[{},0,0,0,30,0]," + UNUSED + "], v1000, fine, tool0"
+    away, safe, near = turned.format(90), turned.format(110), turned.format(0)
+    loop = (
+        f"FOR n FROM 1 TO 2 DO\n WaitDI diOut,1;\n IF n=1 THEN\n {safe};\n"
+        f" ELSE\n {near};\n ENDIF\n ENDFOR\n WaitTime 0"
+    )
+    programs = {"one": [away, near, away, "SetDO doOut,1"], "two": [away, loop, away]}
+    link = '[links]\n"one.doOut" = "two.diOut"\n'
+    made = station(write(programs, link, gap=650.0), no_proof=False, interlocks=True)
+    assert made.clear and [wait.action.text for _, wait in made.waits()] == ["WaitDI diOut,1"]
+    assert all(saving.earlier is not None for saving in made.savings)
 
 
 @pytest.mark.parametrize(
