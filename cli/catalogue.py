@@ -125,6 +125,8 @@ def _add(name: str | None, file: Path | None, vendor: str | None, force: bool) -
     added = load_robot_file(file, registry(), vendor)
     kept = keep_robot(added, registry().find_vendor(added.name.partition("/")[0]), force)
     print_rich(f"{added.name} is kept as {kept}")
+    if added.external_axes:
+        print_rich(load_robot_file(kept, registry()).doubts[-1])
 
 
 def _show(robot: Robot, json: bool) -> None:

@@ -43,6 +43,8 @@ def with_own_robots(vendors: Mapping[str, Vendor]) -> dict[str, Vendor]:
 def keep_robot(robot: Robot, vendor: Vendor, replace_existing: bool = False) -> Path:
     """Put a robot among the user's own, from where it is found by its name.
 
+    Its external axes belong to a cell, and are not kept: the robot says so.
+
     Args:
         robot: called ``vendor/model``.
         vendor: whose robots it must not be called like.
@@ -72,5 +74,18 @@ def keep_robot(robot: Robot, vendor: Vendor, replace_existing: bool = False) -> 
     from .files.writing import write_files
     from .robot.catalogue_text import robot_text
 
-    write_files({file: robot_text(robot).encode()}, own_folder())
+    write_files({file: robot_text(_alone(robot)).encode()}, own_folder())
     return file
+
+
+def _alone(robot: Robot) -> Robot:
+    """A robot without its external axes, which says so."""
+    if not robot.external_axes:
+        return robot
+    names = ", ".join(axis.name for axis in robot.external_axes)
+    said = (
+        f"its external axes ({names}) are not kept: say them in a cell file ([external_axis]), or "
+        "name the robot by the file that they are in"
+    )
+    origins = {group: said for group, said in robot.origins.items() if group != "external axes"}
+    return replace(robot, external_axes=(), origins=origins, doubts=(*robot.doubts, said))

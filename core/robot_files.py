@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from .registry import Registry
     from .robot.model import Robot
 
-CATALOGUE, URDF = ".toml", ".urdf"
+CATALOGUE, URDF, XACRO = ".toml", ".urdf", ".xacro"
 _OTHERS = (".xml", ".dat")
 
 
 def names_file(name: str) -> bool:
     """Whether a robot is named by a file, judged by how the name ends."""
-    return Path(name).suffix.lower() in (CATALOGUE, URDF, *_OTHERS)
+    return Path(name).suffix.lower() in (CATALOGUE, URDF, XACRO, *_OTHERS)
 
 
 def load_robot_file(
@@ -48,14 +48,15 @@ def load_robot_file(
         raise InputError(f"{path}: an SRDF belongs to a URDF, and this is none; leave {srdf} out")
     if suffix == CATALOGUE:
         return _of_vendor(path, _catalogue(path), registry, vendor)
-    if suffix == URDF:
+    if suffix in (URDF, XACRO):
         return _of_urdf(path, registry, vendor, srdf)
     owners = [v for v in registry.vendors.values() if v.described and vendor in (None, v.name)]
     if len(owners) != 1 or owners[0].described is None:
-        known = ", ".join(v.name for v in owners) or "no vendor"
+        known = ", ".join(sorted(v.name for v in registry.vendors.values() if v.described))
+        whose = f"; say whose it is by {spelt('vendor')}" if owners else ""
         raise InputError(
             f"{path}: a robot is read of a catalogue file (.toml), a URDF (.urdf), or machine data "
-            f"of a controller, which {known} reads; say whose it is"
+            f"of a controller (of {known}), and this is none{whose}"
         )
     return _of_vendor(path, owners[0].described(path), registry, vendor)
 

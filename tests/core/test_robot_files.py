@@ -14,6 +14,7 @@ from flyby.core.errors import InputError, OptionError
 from flyby.core.own_robots import keep_robot, with_own_robots
 from flyby.core.registry import Registry, find_robot, find_vendor, installed
 from flyby.core.robot.catalogue_text import robot_text
+from flyby.core.robot.joint import ExternalAxis, ExternalRole
 from flyby.core.robot.model import Robot
 from flyby.core.robot_files import load_robot_file, names_file
 from flyby.core.spatial.pose import Pose
@@ -145,6 +146,12 @@ def test_kept_robots_are_found_by_their_name(own: Path) -> None:
     with pytest.raises(InputError, match="is kept already"):
         keep_robot(mine, vendors["kuka"])
     keep_robot(replace(mine, payload=1.0), vendors["kuka"], replace_existing=True)
+    track = ExternalAxis(replace(mine.joints[0], name="rail"), ExternalRole.TRACK)
+    stated = {**mine.origins, "external axes": "published"}
+    railed = replace(mine, name="kuka/railed", external_axes=(track,), origins=stated)
+    kept = load_robot_file(keep_robot(railed, find_vendor("kuka")), installed())
+    assert kept.doubts[-1].startswith("its external axes (rail) are not kept")
+    assert "external axes" not in kept.origins
     assert load_robot_file(path, installed()).payload == 1.0
 
 

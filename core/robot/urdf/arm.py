@@ -6,21 +6,20 @@ continuous joints; velocities and efforts that are missing or zero.
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError, UnknownNameError
-from ...files.reading import read_bytes
 from ...spatial.pose import IDENTITY, Pose
 from ..inertia import Inertia
-from ..joint import Joint, JointKind
+from ..joint import ExternalAxis, ExternalRole, Joint, JointKind
 from ..model import Robot
+from .parsing import parsed
 from .shapes import UrdfShapes
 from .srdf import TouchRules, find_srdf, read_srdf
 
@@ -30,11 +29,18 @@ further ones. Geometric means of the 42 six-axis arms of the catalogue whose acc
 published or identified."""
 ACCELERATION_SPREAD = 2.6
 """Factor by which these miss single joints of those arms (one standard deviation)."""
+VELOCITY = math.pi
+VELOCITY_SPREAD = 1.8
+"""rad/s that is assumed of a joint of which none is stated; factor by which it misses single joints
+of the 169 six-axis arms of the catalogue of which speeds are (one standard deviation: 1.75)."""
 CONTINUOUS_RANGE = 2 * math.pi
 """rad either way that a continuous joint is assumed to turn."""
-MOST_BYTES = 20_000_000
 BASE = "base"
 """Link in the controller's own frame (ROS-Industrial, REP 199)."""
+RAILED = 7
+"""Joints of an arm of six that a rail carries."""
+FEWEST = 3
+"""Joints of an arm, behind which fingers are a gripper's."""
 FLANGES = ("tool0", "flange")
 """Links that flanges are called by; the first is the controller's own (REP 199)."""
 LONGEST_RANGE = 1e4
@@ -73,7 +79,7 @@ def load_urdf(
         UnknownNameError: there is no link of that name.
     """
     path = Path(path)
-    reader = _Reader(path, _parse(path), None if srdf is None else Path(srdf))
+    reader = _Reader(path, parsed(path), None if srdf is None else Path(srdf))
     try:
         reader.check()
         if base is not None:
@@ -88,28 +94,6 @@ def load_urdf(
         raise InputError(told if known else f"{path}: {told}") from None
 
 
-def _parse(path: Path) -> Any:
-    import yourdfpy
-    from lxml import etree
-
-    data = read_bytes(path, MOST_BYTES)
-    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        raise InputError(f"{path}: is not a URDF file: it declares a document type; remove that")
-    try:
-        # What is no XML would be mended by guessing.
-        etree.fromstring(data, etree.XMLParser(resolve_entities=False, no_network=True))
-        with np.errstate(all="ignore"):
-            urdf = yourdfpy.URDF.load(
-                io.BytesIO(data),
-                build_scene_graph=False,
-                load_meshes=False,
-                mesh_dir=str(path.parent),
-            )
-    except Exception as error:  # the parser raises whatever its XML library does
-        raise InputError(f"{path}: is not a URDF file: {error}") from error
-    return urdf.robot
-
-
 @dataclass
 class _Reader:
     """One parsed file."""
@@ -117,6 +101,8 @@ class _Reader:
     path: Path
     model: Any
     srdf: Path | None = None
+    left_out: dict[str, None] = field(default_factory=dict)
+    """Joints behind the flange."""
 
     def error(self, message: str) -> InputError:
         return InputError(f"{self.path}: {message}")
@@ -138,14 +124,22 @@ class _Reader:
         children = {joint.child for joint in self.model.joints}
         roots = [name for name in self.links if name not in children]
         if len(roots) != 1:
-            raise self.error(f"has {len(roots)} root links ({', '.join(roots)}); name the base")
+            raise self.error(
+                f"has {len(roots)} root links ({', '.join(roots)}): add fixed joints from one link "
+                "to them, or name the base"
+            )
         return roots[0]
 
     def robot(self, base: str, tip: str | None) -> Robot:
         for name in (base, tip):
             if name is not None and name not in self.links:
                 raise UnknownNameError(f"link in {self.path}", name, self.links)
-        way = self.way(base, tip or self.leaf(base))
+        tip = tip or self.leaf(base)
+        way = self.way(base, tip)
+        moving = [element for element in way if element.type != "fixed"]
+        slides = [element.type == "prismatic" for element in moving]
+        if len(moving) == RAILED and slides[0] and not any(slides[1:]):
+            return self.on_rail(base, moving[0], tip)
         assumed: dict[str, list[str]] = {
             "range": [],
             "velocity": [],
@@ -178,10 +172,41 @@ class _Reader:
             links=tuple(known) if len(known) == len(joints) else (),
             shapes=() if found.unread else tuple(found.shapes),
             origins=self.origins(assumed) | ({"shape": found.origin} if found.stated else {}),
-            doubts=(*found.unread, *(() if rules is None else rules.doubts)),
-            spread={"acceleration": ACCELERATION_SPREAD},
+            doubts=(*found.unread, *(() if rules is None else rules.doubts), *self.hands(tip)),
+            spread=self.spread(assumed),
             may_touch=() if rules is None else rules.touching(self.drawn(base, way)),
         )
+
+    def on_rail(self, base: str, rail: Any, tip: str) -> Robot:
+        """An arm of six joints on what carries it along: an external axis of its controller."""
+        arm = self.robot(rail.child, tip)
+        assumed: dict[str, list[str]] = {"range": [], "velocity": [], "effort": [], "inertia": []}
+        placement = IDENTITY
+        for element in self.way(base, rail.child):
+            placement = placement @ _pose(element.origin)
+        track = ExternalAxis(
+            self.joint(rail, placement, ACCELERATION_TIMES[0], assumed), ExternalRole.TRACK
+        )
+        origin = f"published: {self.path.name}; acceleration assumed as of the arm's first joints"
+        doubt = f"the bed of its rail {rail.name} has no shape here"
+        return replace(
+            arm,
+            external_axes=(track,),
+            origins={**arm.origins, "external axes": origin},
+            doubts=(*arm.doubts, doubt) if self.links[base].collisions else arm.doubts,
+        )
+
+    def spread(self, assumed: dict[str, list[str]]) -> dict[str, float]:
+        """By what factors assumed figures may be off."""
+        known = {"acceleration": ACCELERATION_SPREAD}
+        return known | ({"velocity": VELOCITY_SPREAD} if assumed["velocity"] else {})
+
+    def hands(self, tip: str) -> tuple[str, ...]:
+        """What is said of joints behind the flange."""
+        if not self.left_out:
+            return ()
+        said = f"joints behind the flange, a gripper's, are left out: {', '.join(self.left_out)}"
+        return (f"{said}; the flange is link {tip}, and their links have no shape here",)
 
     def touch_rules(self) -> TouchRules | None:
         """What the SRDF says; None where there is none."""
@@ -198,6 +223,9 @@ class _Reader:
         while stack:
             name, moved_by = stack.pop()
             below = [joint for joint in self.model.joints if joint.parent == name]
+            if len(moved_by) >= FEWEST and self.holds(below):
+                leaves[name] = moved_by
+                continue
             for joint in below:
                 moves = () if joint.type == "fixed" else (joint.name,)
                 stack.append((joint.child, (*moved_by, *moves)))
@@ -210,7 +238,17 @@ class _Reader:
         ends = [name for name, moved_by in leaves.items() if len(moved_by) == most]
         if len(ends) == 1:
             return ends[0]
-        raise self.error(f"ends in several links ({', '.join(sorted(ends))}); name the tip")
+        raise self.error(
+            f"ends in several links ({', '.join(sorted(ends))}): add a link {FLANGES[0]!r}, fixed "
+            "where the flange is, or name the tip"
+        )
+
+    def holds(self, below: list[Any]) -> bool:
+        """Whether joints are those of a gripper: fingers that one another mimic, or that part."""
+        moving = [joint for joint in below if joint.type != "fixed"]
+        return any(joint.mimic is not None for joint in moving) or (
+            len(moving) > 1 and all(joint.type == "prismatic" for joint in moving)
+        )
 
     def from_controller(self) -> Pose:
         """The root's frame in the controller's own one; none other where the file has no such."""
@@ -246,7 +284,9 @@ class _Reader:
                 "only arms whose joints move independently can be used"
             )
         if element.type not in KINDS:
-            raise self.error(f"joint {name!r} is {element.type}; known: {', '.join(KINDS)}, fixed")
+            raise self.error(
+                f"joint {name!r} is {element.type}; known: {', '.join(KINDS)}, fixed: make it one"
+            )
         kind, limit = KINDS[element.type], element.limit
         axis = np.array([1.0, 0.0, 0.0] if element.axis is None else element.axis, dtype=float)
         if axis.shape != (3,) or not 1e-9 < np.abs(axis).max() < 1e9:
@@ -268,7 +308,7 @@ class _Reader:
         if not velocity:
             if kind is JointKind.PRISMATIC:
                 raise self.error(f"joint {name!r} needs <limit velocity=>")
-            velocity = math.pi
+            velocity = VELOCITY
             assumed["velocity"].append(name)
         effort = limit.effort if limit is not None else None
         if not effort:
@@ -310,6 +350,8 @@ class _Reader:
                     continue
                 if joint.type == "fixed":
                     stack.append((joint.child, placement @ _pose(joint.origin)))
+                elif joint not in way and link == self.bodies("", way)[-1]:
+                    self.left_out.setdefault(joint.name, None)  # behind the flange: a tool's
                 elif joint not in way:
                     raise self.error(
                         f"the arm branches at link {name!r}: joint {joint.name!r} moves too; "

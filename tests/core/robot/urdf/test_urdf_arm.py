@@ -86,6 +86,10 @@ def test_a_continuous_joint_without_limits_is_assumed_aloud(load) -> None:
     assert (only.lower, only.upper, only.effort) == (-2 * math.pi, 2 * math.pi, None)
     assert only.velocity == pytest.approx(math.pi)
     assert "assumed" in found.origins["range"] and "j1" in found.origins["velocity"]
+    assert found.spread["velocity"] > 1.0
+    none = LIMIT.replace('velocity="3"', 'velocity="0"')  # as exporters write what they do not know
+    (only,) = load(robot(joint("j1", "base", "a", limit=none), links="base a")).joints
+    assert only.velocity == pytest.approx(math.pi)
 
 
 def test_without_inertials_only_kinematics_is_left(load) -> None:
@@ -158,6 +162,63 @@ def test_what_is_no_urdf_is_refused(load, tmp_path) -> None:
         load("<robot")
     with pytest.raises(InputError, match="cannot be read: No such file"):
         load_urdf(tmp_path / "missing.urdf")
+
+
+CHAIN = [f"l{k}" for k in range(8)]
+
+
+def chain(*kinds: str, mimic: bool = False) -> str:
+    """An arm of joints of these kinds, with two fingers if one of them mimics the other."""
+    arm = [joint(f"j{k}", f"l{k - 1}", f"l{k}", kind) for k, kind in enumerate(kinds, 1)]
+    links = CHAIN[: len(kinds) + 1]
+    if mimic:
+        hand = links[-1]
+        arm += [
+            joint("left", hand, "f1", "prismatic"),
+            joint("right", hand, "f2", "prismatic", more='<mimic joint="left"/>'),
+        ]
+        links = [*links, "f1", "f2"]
+    return robot(*arm, links=" ".join(links))
+
+
+def test_a_rail_is_an_external_axis(load) -> None:
+    """As the controller of an arm of six axes drives it; the flange is where the file has it."""
+    text = chain("prismatic", *6 * ("revolute",))
+    found = load(text)
+    (track,) = found.external_axes
+    assert (track.name, track.role.value, len(found.joints)) == ("j1", "track", 6)
+    model = pin.buildModelFromXML(text)
+    data = model.createData()
+    q = np.random.default_rng(3).normal(size=7)
+    pin.framesForwardKinematics(model, data, q)
+    there = data.oMf[model.getFrameId("l7")]
+    R, p = found.forward([*q[1:], q[0]])
+    np.testing.assert_allclose(R, there.rotation, atol=1e-12)
+    np.testing.assert_allclose(p, there.translation, atol=1e-12)
+    seven = load(chain(*7 * ("revolute",)))
+    assert len(seven.joints) == 7 and not seven.external_axes
+
+
+def test_fingers_are_no_part_of_the_arm(load) -> None:
+    bare, held = load(chain(*6 * ("revolute",))), load(chain(*6 * ("revolute",), mimic=True))
+    assert held.joints == bare.joints and held.flange == bare.flange
+    assert any("left out: left, right; the flange is link l6" in doubt for doubt in held.doubts)
+    with pytest.raises(InputError, match="branches at link 'l6': joint 'left' moves"):
+        load(chain(*6 * ("revolute",), mimic=True), tip="f2")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('<sdf version="1.6"><model/></sdf>', "it begins with <sdf>, not <robot>"),
+        ('<robot name="a"><group name="arm"/></robot>', "an SRDF, which belongs to a URDF"),
+        ('<robot name="a"><link name="l"/><joint name="${p}j"/></robot>', "a template of xacro"),
+        ('<robot name="a"><xacro:include filename="b"/></robot>', "a template of xacro"),
+    ],
+)
+def test_what_it_is_instead_is_said(load, text, message) -> None:
+    with pytest.raises(InputError, match=message):
+        load(text)
 
 
 SHORT = (
