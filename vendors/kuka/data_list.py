@@ -24,6 +24,8 @@ _LINE = re.compile(
     r"(?:\[\s*(\d{0,6})\s*,?\s*\])?\s*=(?!=)\s*(.*)",
     re.IGNORECASE | re.ASCII,
 )
+_HEAD = re.compile(r"^[ \t]*DEFDAT[ \t]+(\S+)", re.IGNORECASE | re.MULTILINE)
+_END = re.compile(r"^[ \t]*ENDDAT\b", re.IGNORECASE | re.MULTILINE)
 _TOKEN = re.compile(
     r"""\s*(?:(?P<text>"[^"]*")|(?P<bits>'[BH][0-9A-F]*')|(?P<sign>[{},:;])"""
     r"""|(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:E[-+]?\d+)?(?![\w.]))|(?P<word>[#$]?[A-Z_][\w$]*"""
@@ -55,6 +57,8 @@ class DataList:
         name: of the list, for messages.
         data: by name, in capitals, and index; 0 of what has none.
         unread: lines whose values make no sense, in the same way.
+        declared: what it calls itself, as ``$MACHINE``; empty if it does not.
+        ends: whether it has an end where it has a beginning.
     """
 
     def __init__(
@@ -62,10 +66,14 @@ class DataList:
         name: str,
         data: Mapping[tuple[str, int], Assigned],
         unread: Mapping[tuple[str, int], int] | None = None,
+        declared: str = "",
+        ends: bool = True,
     ) -> None:
         self.name = name
         self.data = data
         self.unread = unread or {}
+        self.declared = declared
+        self.ends = ends
 
     @classmethod
     def read(cls, file: Path) -> DataList:
@@ -90,12 +98,15 @@ class DataList:
                 unread[key] = number
             else:
                 data[key] = Assigned(value, source.name, number)
-        return cls(source.name, data, unread)
+        head = _HEAD.search(source.text)
+        ends = head is None or _END.search(source.text) is not None
+        return cls(source.name, data, unread, head[1] if head else "", ends)
 
     def over(self, other: DataList) -> DataList:
         """Both, where this one counts for what both assign."""
         below = {key: one for key, one in other.data.items() if key not in self.unread}
-        return DataList(self.name, {**below, **self.data}, self.unread)
+        ends = self.ends and other.ends
+        return DataList(self.name, {**below, **self.data}, self.unread, self.declared, ends)
 
     def has(self, name: str, index: int = 0) -> bool:
         """Whether it assigns a datum."""
@@ -143,7 +154,8 @@ class DataList:
             line = self.unread[name, index]
             raise InputError(f"{self.name}:{line}: {_spelt(name, index)} has no value that is one")
         if not self.has(name, index):
-            raise InputError(f"{self.name}: {_spelt(name, index)} is missing")
+            why = "" if self.ends else ", and the file is cut short: it has no ENDDAT. Copy it anew"
+            raise InputError(f"{self.name}: {_spelt(name, index)} is missing{why}")
         return self.data[name, index].value
 
     def _wrong(self, name: str, index: int, wanted: str) -> InputError:

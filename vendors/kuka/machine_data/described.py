@@ -28,7 +28,7 @@ from .filters import filters
 from .geometry import AXES, ArmGeometry, frame, geometry
 from .named_arms import APART, FindRobot, apart, called, listed_arm, name_alone, payload_of_name
 
-_MODEL, _ARM = "$robcor.dat", "$machine.dat"
+_MODEL, _ARM, _DECLARED = "$robcor.dat", "$machine.dat", "$MACHINE"
 
 
 def with_machine_data(robot: Robot, file: Path) -> Robot:
@@ -303,4 +303,9 @@ def _read(file: Path) -> DataList:
         raise InputError(str(error)) from None
     if not data.data:
         raise InputError(f"{file}: no {_ARM}: it assigns nothing")
+    if data.declared and data.declared.upper() != _DECLARED:
+        raise InputError(
+            f"{file}: is the data list {data.declared}: the arm is described by {_ARM}, in R1/Mada "
+            "of the controller"
+        )
     return data

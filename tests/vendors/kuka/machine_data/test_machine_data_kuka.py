@@ -18,7 +18,7 @@ from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.text.files import SourceFile
 from flyby.tasks.setup import RobotOptions, Setup, laid_on
 from flyby.vendors.kuka.data_list import DataList
-from flyby.vendors.kuka.machine_data import stated_in, with_machine_data
+from flyby.vendors.kuka.machine_data import robot_of, stated_in, with_machine_data
 
 from .data_lists import FILTER_MS, machine_data, write
 
@@ -162,3 +162,22 @@ def test_lines_that_make_no_sense_are_passed_over(line: str) -> None:
 def test_no_text_crashes(text: str) -> None:
     for one in listed(text).data.values():
         assert one.line >= 1
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda text: text[: len(text) // 2], "is missing, and the file is cut short"),
+        (
+            lambda text: text.replace("DEFDAT  $MACHINE", "DEFDAT $ROBCOR"),
+            r"is the data list \$ROBCOR: the arm is described by \$machine\.dat, in R1/Mada",
+        ),
+    ],
+)
+def test_what_it_is_instead_is_said(tmp_path, change, said: str) -> None:
+    text = machine_data(KR3, "#KR3")
+    assert robot_of(write(tmp_path, "$machine.dat", text)).arm_size == 6
+    changed = change(text)
+    assert changed != text
+    with pytest.raises(InputError, match=said):
+        robot_of(write(tmp_path, "other.dat", changed))
