@@ -1,4 +1,4 @@
-"""How messages name options and tasks: as in Python, or as they are typed in a shell.
+"""How messages name options and tasks: as in Python, as typed in a shell, or as a file has them.
 
 A message names the option that helps. How options are typed is known above: whoever serves a shell
 says so (`command_line`).
@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from types import MappingProxyType
 from typing import NamedTuple
 
 
@@ -31,6 +32,7 @@ class Shell(NamedTuple):
 
 
 _SHELL: ContextVar[Shell | None] = ContextVar("shell", default=None)
+_KEYS: ContextVar[Mapping[str, str]] = ContextVar("keys", default=MappingProxyType({}))
 
 
 @contextmanager
@@ -41,6 +43,20 @@ def command_line(shell: Shell) -> Iterator[None]:
         yield
     finally:
         _SHELL.reset(token)
+
+
+@contextmanager
+def said_in_file(keys: Mapping[str, str]) -> Iterator[None]:
+    """Have messages within name options as the keys of a file that states them.
+
+    Args:
+        keys: by the options' names in Python.
+    """
+    token = _KEYS.set(keys)
+    try:
+        yield
+    finally:
+        _KEYS.reset(token)
 
 
 def at_command_line() -> bool:
@@ -56,7 +72,8 @@ def spelt(name: str, flag: str | None = None) -> str:
         flag: at the command line, where one task alone calls it otherwise.
     """
     shell = _SHELL.get()
-    return name if shell is None else flag or shell.flag_of(name)
+    known = name if shell is None else flag or shell.flag_of(name)
+    return _KEYS.get().get(name, known)
 
 
 def switched(name: str) -> str:
@@ -69,6 +86,8 @@ def given(name: str, what: str, flag: str | None = None) -> str:
 
     ``--out FOLDER``, ``out=FOLDER``.
     """
+    if name in _KEYS.get():
+        return f"{spelt(name)} = {what}"
     return f"{spelt(name, flag)}{' ' if at_command_line() else '='}{what}"
 
 

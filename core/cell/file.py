@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,9 +47,9 @@ def load_cell(path: str | Path, registry: Registry) -> Cell:
     robot = read_arm(file, _robot(file, registry, tuple(axes)))
     tools, shapes = _tools(file)
     tables = {axis.name for axis in robot.external_axes if axis.role is ExternalRole.TABLE}
-    obstacles = _obstacles(file, tables)
+    obstacles = _obstacles(file, robot.external_axes)
     parts = _parts(file, tables, (*tools, *(o.name for o in obstacles)))
-    frames = _frames(file, tables)
+    frames = _frames(file, robot.external_axes)
     clearance = _clearance(file)
     motion = Path(path).parent / file.text("motion") if file.has("motion") else None
     allow = file.table("allow")
@@ -126,7 +126,7 @@ def _tools(file: TomlTable) -> tuple[dict[str, Tool], dict[str, Geometry]]:
     return tools, shapes
 
 
-def _frames(file: TomlTable, tables: Collection[str]) -> dict[str, WorkObject]:
+def _frames(file: TomlTable, axes: Sequence[ExternalAxis]) -> dict[str, WorkObject]:
     frames: dict[str, WorkObject] = {}
     for name, table in file.named_tables("frame").items():
         if name == WORLD.name:
@@ -136,13 +136,13 @@ def _frames(file: TomlTable, tables: Collection[str]) -> dict[str, WorkObject]:
             user=pose_at(table, "pose"),
             frame=pose_at(table, "object"),
             robot_held=table.flag("robot_held", False),
-            moved_by=_carrier(table, "moved_by", tables),
+            moved_by=_carrier(table, "moved_by", axes),
         )
         table.finish()
     return frames
 
 
-def _obstacles(file: TomlTable, tables: Collection[str]) -> tuple[Obstacle, ...]:
+def _obstacles(file: TomlTable, axes: Sequence[ExternalAxis]) -> tuple[Obstacle, ...]:
     obstacles: list[Obstacle] = []
     for table in file.listed_tables("obstacle"):
         name = table.text("name")
@@ -151,7 +151,7 @@ def _obstacles(file: TomlTable, tables: Collection[str]) -> tuple[Obstacle, ...]
         geometry = read_geometry(table, pose_at(table, "pose"))
         if geometry is None:
             raise table.error("mesh", "is missing, and so are box_mm, sphere_mm and the like")
-        obstacles.append(Obstacle(name, geometry, _carrier(table, "carried_by", tables)))
+        obstacles.append(Obstacle(name, geometry, _carrier(table, "carried_by", axes)))
         table.finish()
     return tuple(obstacles)
 
@@ -168,8 +168,17 @@ def _parts(
     return tuple(parts)
 
 
-def _carrier(table: TomlTable, key: str, tables: Collection[str]) -> str | None:
-    return table.choice(key, tables) if table.has(key) else None
+def _carrier(table: TomlTable, key: str, axes: Sequence[ExternalAxis]) -> str | None:
+    if not table.has(key):
+        return None
+    roles = {axis.name: axis.role for axis in axes}
+    if roles.get(table.text(key)) is ExternalRole.TRACK:
+        raise table.error(
+            key,
+            f"{table.text(key)!r} is a track: it carries the robot alone, and bodies that ride "
+            'with it are shapes of its base ([[robot_shape]] with link = "base")',
+        )
+    return table.choice(key, [name for name, role in roles.items() if role is ExternalRole.TABLE])
 
 
 def _external_axis(name: str, table: TomlTable) -> ExternalAxis:

@@ -204,7 +204,7 @@ class TomlTable:
         return float(value)
 
     def _full(self, key: str) -> str:
-        return f"{self.key}.{key}" if self.key else key
+        return ".".join(filter(None, (self.key, key)))
 
 
 def _nearest(name: str, known: Collection[str]) -> str:

@@ -252,6 +252,8 @@ def _zone(name: str, table: TomlTable) -> WorldZone:
         raise table.error("", "needs box_mm, ball_mm, cylinder_mm or axes_deg")
     if not isinstance(axes, list) or not all(map(_is_range, axes)):
         raise table.error("axes_deg", "holds the number of an axis with its range: [[1, -30, 30]]")
+    if corners is not None and any(corners[k] == corners[k + 3] for k in range(3)):
+        raise table.error("box_mm", "is two corners with space between: [x, y, z, x, y, z]")
     if ball is not None and ball[3] <= 0.0:
         raise table.error("ball_mm", "is a centre and a radius above zero: [x, y, z, r]")
     if cylinder is not None and (cylinder[3] <= 0.0 or cylinder[4] == 0.0):

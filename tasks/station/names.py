@@ -20,9 +20,10 @@ Actions = Mapping[str, tuple["Action", ...]]
 def check_names(file: StationFile, members: Members, actions: Actions) -> None:
     """Every name of a station file is one of its robots' and programs'.
 
-    Links lead from outputs that are set to inputs that are waited for or looked at by logic; what
-    is ``given`` is looked at by someone, what is on at the beginning is known to someone; things
-    that may touch are links, tools and obstacles.
+    Links lead from outputs that are set to inputs that are waited for or looked at by logic, and to
+    no output; logic looks at what something sets; what is ``given`` is looked at by someone, what
+    is on at the beginning is known to someone; things that may touch are links, tools and
+    obstacles.
 
     Args:
         file: the station file.
@@ -38,7 +39,27 @@ def check_names(file: StationFile, members: Members, actions: Actions) -> None:
             _refuse(file, "links", "output that a program sets", wire.source, known.set)
         if not known.looked_at(wire.target):
             _refuse(file, "links", "input that a program waits for", wire.target, known.asked)
+        if _key(wire.target) in known.set:
+            raise InputError(
+                f"{file.file}: links: {wire.target} is an output that its own robot sets: a link "
+                "leads to an input"
+            )
     sent = known.set | known.wired | known.gates
+    on = {_key(name) for name in (*file.given, *file.initial)}
+    led = set(known.set) | set(known.gates) | on
+    for _ in file.wires:
+        led |= {_key(wire.target) for wire in file.wires if _key(wire.source) in led}
+    for wire in file.wires:
+        if _key(wire.source) not in led:
+            raise InputError(
+                f"{file.file}: links: {wire.source}: links lead to it in a ring, and no output does"
+            )
+    for name, gate in file.gates.items():
+        for one in (*gate.inputs, *gate.resets):
+            if _key(one.name) not in led and not _said(one.name, members):
+                error = UnknownNameError("signal that something sets", one.name, sent.values())
+                why = "what nobody of the station sets stands in [given]"
+                raise InputError(f"{file.file}: logic.{name}: {error} ({why})")
     for name in sorted(file.initial):
         if _key(name) not in {*sent, *known.asked, *known.used} and not _said(name, members):
             names = {**known.set, **known.asked, **known.gates}

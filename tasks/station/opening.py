@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...core.door import said_in_file
 from ...core.errors import InputError, MotionError, Note
 from ..setup import start_of
 from .members import ReadMember, drive_members, read_member
@@ -67,12 +68,8 @@ def open_station(
     sources = _listed(source)
     stated = len(sources) == 1 and is_station_file(sources[0])
     file = read_station_file(sources[0]) if stated else _of_backups(sources)
-    read: dict[str, ReadMember] = {}
-    for member in file.members:
-        say(f"reading {member.name}")
-        read[member.name] = read_member(member, file)
-        if proven:
-            _refuse_assumed(file, member.name, read[member.name].program)
+    with said_in_file(_keys(stated)):
+        read = _read(file, say, proven)
     try:
         together = moves_together(
             {name: one.program for name, one in read.items()},
@@ -81,7 +78,8 @@ def open_station(
         )
     except InputError as error:
         raise InputError(f"{file.file}: {error}") from None
-    driven = drive_members(read, file, together, say)
+    with said_in_file(_keys(stated)):
+        driven = drive_members(read, file, together, say)
     members, actions = {}, {}
     unknown: list[Note] = []
     notes: list[Note] = []
@@ -149,6 +147,24 @@ def open_station(
         )
     notes += [*shared.notes, *_alone(actions), *_passed(actions, members)]
     return OpenedStation(station, actions, tuple(unknown), tuple(notes))
+
+
+def _keys(stated: bool) -> dict[str, str]:
+    """How options of a robot's program are said of a station, by their names."""
+    keys = ("cell", "entry", "task", "answers", "start", "configuration")
+    found = {**{key: key for key in keys}, "robot": "robot in its cell file"}
+    return found if stated else {name: f"{key} in a station file" for name, key in found.items()}
+
+
+def _read(file: StationFile, say: Callable[[str], None], proven: bool) -> dict[str, ReadMember]:
+    """The programs of all robots; what nothing can be proven of is refused, if that is asked."""
+    read = {}
+    for member in file.members:
+        say(f"reading {member.name}")
+        read[member.name] = read_member(member, file)
+        if proven:
+            _refuse_assumed(file, member.name, read[member.name].program)
+    return read
 
 
 def _refuse_assumed(file: StationFile, name: str, program: Program) -> None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from ...cell.cell import Cell, Obstacle
 from ...cell.geometry import Geometry, Mesh
 from ...errors import InputError, Note
+from ...files.toml_text import key_text
 from ...program.tool import FLANGE, Tool
 from ...robot.model import Robot
 from ...spatial.pose import Pose
@@ -114,7 +115,7 @@ def _check_tool(cell: Cell, tool: Tool) -> None:
         known = ", ".join(repr(name) for name in sorted(cell.tools))
         raise InputError(
             f"{where} has no tool {tool.name!r}, so its shape is not known; it has {known}; "
-            f"add [tool.{tool.name}]"
+            f"add [tool.{key_text(tool.name)}]"
         )
     held = cell.tools[tool.name].robot_held
     if held != tool.robot_held:

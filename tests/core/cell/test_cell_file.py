@@ -211,7 +211,7 @@ def test_unknown_tools_and_frames_get_suggestions(folder: Path) -> None:
         ("capsule_mm = [40, 300]", 'units = "mm"', "tool.spindle.units", "belongs to a mesh"),
         ("[tool.spindle]", "[tool.tool0]", "tool.tool0", "bare flange"),
         ("[frame.bench]", "[frame.wobj0]", "frame.wobj0", "the world"),
-        ('moved_by = "table"', 'moved_by = "track"', "frame.part.moved_by", "known: table"),
+        ('moved_by = "table"', 'moved_by = "track"', "frame.part.moved_by", "'track' is a track"),
         ('role = "table"', 'role = "turntable"', "external_axis.table.role", "'table'"),
         ('kind = "revolute"', "", "external_axis.table.kind", "is missing"),
         ('axis = "z"', 'axis = "w"', "external_axis.table.axis", "known: x, y, z"),

@@ -143,6 +143,8 @@ def test_a_tool_that_the_cell_does_not_know_is_refused() -> None:
     with pytest.raises(InputError, match=r"has no tool 'torch'.*'bare', 'gun', 'spindle', 'tool0'"):
         CollisionScene(cell(), Tool("torch"))
     in_file = replace(cell(), file=Path("station.toml"))
+    with pytest.raises(InputError, match=r'add \[tool\."TOOL_DATA\[1\]"\]'):
+        CollisionScene(in_file, Tool("TOOL_DATA[1]"))
     with pytest.raises(InputError, match=r"station\.toml has no tool 'torch'"):
         CollisionScene(in_file, Tool("torch"))
 

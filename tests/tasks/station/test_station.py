@@ -337,7 +337,11 @@ def test_a_wait_can_go_only_if_it_can_in_every_pass(write: Write) -> None:
         ('[allow]\npairs = [["one.gun", "two.J6"]]\n', ("allow.pairs", "one.gun")),
         ('initial = ["one.doDoen"]\n', ("initial", "one.doDoen", "one.doDone")),
         ('[logic.a]\nand = ["plc.b"]\n', ("[logic.b]",)),
-        ('[logic.a]\nxor = ["one.doDone"]\n', ("needs one of and, or, latch",)),
+        ('[logic.a]\nxor = ["one.doDone"]\n', ("logic.a: needs one of and, or, latch",)),
+        ('[logic.a]\nand = ["one.doDoen"]\n', ("logic.a", "one.doDoen", "one.doDone", "[given]")),
+        ('[links]\n"one.doDone" = "one.doDone"\n[logic.a]\nand = ["one.doDone"]\n', ("output",)),
+        ('[links]\n"two.diGo" = "two.diGo"\n', ("links: two.diGo", "ring", "no output")),
+        ('[zone.z]\nsignal = "one.doIn"\nbox_mm = [0,0,0,0,9,9]\n', ("zone.z.box_mm", "space")),
         ("unknown = 1\n", ("unknown",)),
     ],
 )
