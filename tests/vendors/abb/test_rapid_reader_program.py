@@ -244,7 +244,7 @@ def test_unknown_values_travel_and_drive_as_their_defaults():
         ("at loop;", "depends on itself"),
         ("MoveLL p, v100, z10, tool0;", "did you mean movel?"),
         ("FOR i FROM 1 TO 2 STEP 0 DO ENDFOR", "STEP is zero"),
-        ("GOTO nowhere;", "no label 'nowhere'"),
+        ("GOTO nowhere;", "no label nowhere"),
         ("RAISE 1;", "no ERROR handler takes the error 1"),
         ("RETRY;", "RETRY stands outside an error handler"),
         ("at 1, 2;", "at takes 1 argument, not 2"),

@@ -136,7 +136,7 @@ def test_a_damaged_file_says_where(tmp_path, krl):
         ("DEF a( )\nBOOL b\nb=1+TRUE\nEND", 3, r"'\+' wants numbers"),
         ("DEF a( )\nINT n[3]\nn[4]=1\nEND", 3, "there is no n\\[4\\]: index 4 is outside 1 to 3"),
         ("DEF a( )\nFRAME f\nf.Q=1\nEND", 3, ": FRAME has no component Q"),
-        ("DEF a( )\nGOTO nowhere\nEND", 2, "no label 'nowhere'"),
+        ("DEF a( )\nGOTO nowhere\nEND", 2, "no label nowhere"),
         ("DEF a( )\nEXIT\nEND", 1, "EXIT stands outside a loop"),
         ("DEF a( )\nFOR i=1 TO 5 STEP 0\nENDFOR\nEND", 2, "STEP is zero"),
         ("DEF a( )\nx=ABS(1,2)\nEND", 2, "ABS: it takes 1 argument, not 2"),
