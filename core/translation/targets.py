@@ -21,7 +21,7 @@ from ..program.target import Configuration, JointTarget, PoseTarget
 from ..program.tool import FLANGE, WORLD, WorkObject
 from ..program.zone import FINE
 from ..robot.inverse.solution import UnreachableError
-from ..robot.kinematics.chain_kernels import pose
+from ..robot.kinematics.chain_kernels import poses
 from ..robot.model import Robot
 from ..robot.work_chain import work_chain
 from ..spatial.pose import Pose
@@ -354,9 +354,8 @@ def _joint_target(robot: Robot, q: FloatArray) -> JointTarget:
 
 def _tcp(robot: Robot, move: Move, q: FloatArray) -> Pose:
     """The TCP in the move's work object at a configuration (N,)."""
-    R, p, matrix = np.eye(3), np.zeros(3), np.eye(4)
-    pose(work_chain(robot, move.tool, move.work_object), np.ascontiguousarray(q), R, p)
-    matrix[:3, :3], matrix[:3, 3] = R, p
+    matrix, chain = np.eye(4), work_chain(robot, move.tool, move.work_object)
+    (matrix[:3, :3],), (matrix[:3, 3],) = poses(chain, np.ascontiguousarray(q)[None])
     return Pose.from_matrix(matrix)
 
 

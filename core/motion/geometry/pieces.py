@@ -124,9 +124,7 @@ class Pieces:
     @cached_property
     def interval_samples(self) -> IntArray:
         """(K,), index of the sample at the left end of each interval."""
-        left = np.empty(self.first_interval[-1], dtype=np.int64)
-        _left_samples(self.intervals, left)
-        return left
+        return np.arange(self.first_interval[-1]) + self.interval_pieces
 
     @cached_property
     def interval_ends(self) -> IntArray:
@@ -168,15 +166,6 @@ class Pieces:
         first, edge_bar = self.first_sample, np.zeros(len(self.edge))
         given = first, self.sample_shares, self.source, sigma_bar
         _pull_sigma(*given, edge_bar, waypoint_bar, extent_bar)
-
-
-@lean
-def _left_samples(intervals: IntArray, left: IntArray) -> None:
-    k = 0
-    for p in range(intervals.size):
-        for _ in range(intervals[p]):
-            left[k] = k + p
-            k += 1
 
 
 @lean

@@ -21,6 +21,8 @@ Apart = tuple[float, FloatArray, FloatArray, float]
 end, the share held, and by the share; zero where it is none."""
 _EXACT = 4e-16
 """Share of a line, or of what the TCP makes on it at most, to which an exit is found."""
+_SHARE = -1.0
+"""In the place of a radius: the share is known."""
 Exit = tuple[float, FloatArray, FloatArray, float]
 """The share of a line at which a zone ends, −1 where it does not; its derivatives (N,) by joints
 at the waypoint and at the other end; and how fast the line leaves the zone there, by the
@@ -47,35 +49,67 @@ def first_exit(
         radius: m.
         limit: share at which the search ends.
     """
-    slopes = np.zeros((2, q_wp.size))
-    scratch = _scratch(q_wp.size)
-    share, speed = _exit(chain, q_wp, q_other, radius, limit, *scratch, slopes)
+    line = np.array([q_wp, q_other])
+    (found,), (slopes,) = _leave(chain, line[None], radius, limit)
+    share, _, speed = found.tolist()
+    if speed > 0.0:
+        slopes /= -speed
     return share, slopes[0], slopes[1], speed
 
 
+def ways(chain: Chain, q: FloatArray, share: float) -> tuple[FloatArray, FloatArray]:
+    """How far the TCP gets along joint lines, from either end of each.
+
+    Args:
+        chain: the kinematics.
+        q: (M, 2, N), the lines' ends.
+        share: of the line.
+
+    Returns:
+        Distances (M, 2) in m from the ends, and their derivatives (M, 2, 2, N) by the joints at
+        that end and at the other.
+    """
+    lines = np.stack([q, q[:, ::-1]], axis=1)
+    found, slopes = _leave(chain, lines.reshape(-1, *q.shape[1:]), _SHARE, share)
+    return found[:, 1].reshape(-1, 2), slopes.reshape(lines.shape)
+
+
+def _leave(
+    chain: Chain, lines: FloatArray, radius: float, limit: float
+) -> tuple[FloatArray, FloatArray]:
+    """Where the TCP is ``radius`` from where lines (L, 2, N) begin, up to the share ``limit``.
+
+    Returns:
+        (L, 3), the share (−1 where it is nowhere), the distance, and how fast that grows by the
+        share; (L, 2, N), its derivatives by the joints at both ends.
+    """
+    found, slopes = np.zeros((len(lines), 3)), np.zeros(lines.shape)
+    _fill_exits(chain, lines, radius, limit, *_scratch(lines.shape[2]), found, slopes)
+    return found, slopes
+
+
 @lean
-def _exit(
+def _fill_exits(
     chain: Chain,
-    q_wp: FloatArray,
-    q_other: FloatArray,
+    lines: FloatArray,
     radius: float,
     limit: float,
     R: FloatArray,
     places: FloatArray,
     q: FloatArray,
     columns: FloatArray,
+    found: FloatArray,
     slopes: FloatArray,
-) -> tuple[float, float]:
-    """Share and speed; writes the share's derivatives by the implicit function."""
-    share = _first_exit(chain, q_wp, q_other, radius, limit, R, places, q)
-    if share < 0.0:
-        return share, 0.0
-    _, speed = _tcp_apart(chain, q_wp, q_other, share, R, places, q, columns, slopes)
-    if speed > 0.0:
-        for j in range(q.size):
-            slopes[0, j] /= -speed
-            slopes[1, j] /= -speed
-    return share, speed
+) -> None:
+    for k in range(lines.shape[0]):
+        begin, end, share = lines[k, 0], lines[k, 1], limit
+        if radius >= 0.0:
+            share = _first_exit(chain, begin, end, radius, limit, R, places, q)
+        found[k, 0] = share
+        if share >= 0.0:
+            found[k, 1], found[k, 2] = _tcp_apart(
+                chain, begin, end, share, R, places, q, columns, slopes[k]
+            )
 
 
 @inner
@@ -157,43 +191,6 @@ def _distance(
     for i in range(3):
         square += (p[i] - p0[i]) ** 2
     return math.sqrt(square)
-
-
-def ways(chain: Chain, q: FloatArray, share: float) -> tuple[FloatArray, FloatArray]:
-    """How far the TCP gets along joint lines, from either end of each.
-
-    Args:
-        chain: the kinematics.
-        q: (M, 2, N), the lines' ends.
-        share: of the line.
-
-    Returns:
-        Distances (M, 2) in m from the ends, and their derivatives (M, 2, 2, N) by the joints at
-        that end and at the other.
-    """
-    distance, slopes = np.empty(q.shape[:2]), np.zeros((len(q), 2, *q.shape[1:]))
-    _ways(chain, q, share, *_scratch(q.shape[2]), distance, slopes)
-    return distance, slopes
-
-
-@lean
-def _ways(
-    chain: Chain,
-    ends: FloatArray,
-    share: float,
-    R: FloatArray,
-    places: FloatArray,
-    q: FloatArray,
-    columns: FloatArray,
-    distance: FloatArray,
-    slopes: FloatArray,
-) -> None:
-    for k in range(ends.shape[0]):
-        for near in range(2):
-            line = ends[k, near], ends[k, 1 - near]
-            distance[k, near], _ = _tcp_apart(
-                chain, *line, share, R, places, q, columns, slopes[k, near]
-            )
 
 
 @inner

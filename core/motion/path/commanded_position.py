@@ -15,7 +15,7 @@ from ...errors import InputError, MotionError, Span
 from ...program.move import Move
 from ...program.target import JointTarget
 from ...program.tool import Tool, WorkObject
-from ...robot.kinematics.chain_kernels import pose
+from ...robot.kinematics.chain_kernels import poses
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
 from ...spatial.pose import Pose
@@ -112,9 +112,7 @@ class Standing:
         """
         chain = work_chain(self._robot, tool, work_object)
         frame = np.eye(4)
-        R, p = np.eye(3), np.zeros(3)
-        pose(chain, self.joints(), R, p)
-        frame[:3, :3], frame[:3, 3] = R, p
+        (frame[:3, :3],), (frame[:3, 3],) = poses(chain, self.joints()[None])
         return Pose.from_matrix(frame)
 
     def solve(self, move: Move, near: FloatArray | None = None) -> FloatArray:

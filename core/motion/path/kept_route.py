@@ -14,7 +14,7 @@ from ...program.move import MoveC, MoveJ, MoveL
 from ...program.program import Program
 from ...program.target import JointTarget
 from ...program.zone import FINE
-from ...robot.kinematics.chain_kernels import pose
+from ...robot.kinematics.chain_kernels import fill_poses
 from ..geometry.segments import JOINT_SEGMENT, Ends
 from .path import Route
 from .route_legs import NOWHERE
@@ -77,16 +77,16 @@ def _moved(route: Route, changed: Sequence[tuple[int, JointTarget]]) -> Ends | N
     position, rotation = ends.position.copy(), ends.rotation.copy()
     chains = route.chains
     for k, target in changed:
-        here, after = (k, 1), (k + 1, 0)
+        here, after = (k, slice(1, 2)), (k + 1, slice(0, 1))
         q[here] = (*target.joints, *target.external)
         prescribed[here] = q[k, 1, route.prescribed]
-        pose(chains[k], q[here], rotation[here], position[here])
+        fill_poses(chains[k], q[here], rotation[here], position[here])
         if k + 1 < count:
             q[after], prescribed[after] = q[here], prescribed[here]
             if chains[k + 1] is chains[k]:
                 rotation[after], position[after] = rotation[here], position[here]
             else:
-                pose(chains[k + 1], q[after], rotation[after], position[after])
+                fill_poses(chains[k + 1], q[after], rotation[after], position[after])
     moved = [k for k, _ in changed]
     near = [k for k in {*moved, *(k + 1 for k in moved)} if k < count]
     if (np.linalg.norm(q[near, 1] - q[near, 0], axis=1) <= NOWHERE).any():

@@ -20,7 +20,7 @@ from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
 from ...program.tool import WORLD, Tool, WorkObject
 from ...robot.kinematics.chain import Chain
-from ...robot.kinematics.chain_kernels import pose
+from ...robot.kinematics.chain_kernels import fill_poses
 from ...robot.model import Robot
 from ...robot.work_chain import work_chain
 from ..configurations.finder import ConfigurationFinder, Label
@@ -261,7 +261,7 @@ class RouteFinder:
         known = np.empty((count + 1, size))
         known[0] = q
         position, rotation = np.empty((count + 1, 3)), np.empty((count + 1, 3, 3))
-        pose(stage.chain, np.ascontiguousarray(q), rotation[0], position[0])
+        fill_poses(stage.chain, known[:1], rotation[:1], position[:1])
         kind = np.empty(count, dtype=np.int64)
         via, follows = np.zeros((count, 3)), np.zeros(count, dtype=bool)
         via_rotation = np.zeros((count, 3, 3))
@@ -272,7 +272,8 @@ class RouteFinder:
             try:
                 if isinstance(move.target, JointTarget):
                     known[k + 1] = self._targets.joints(move.target, known[k])
-                    pose(stage.chain, known[k + 1], rotation[k + 1], position[k + 1])
+                    end = slice(k + 1, k + 2)
+                    fill_poses(stage.chain, known[end], rotation[end], position[end])
                 else:
                     if kind[k] != JOINT_SEGMENT and move.target.arm_angle is not None:
                         known[k + 1] = self._finder.led(move, i, known[k])

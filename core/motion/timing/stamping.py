@@ -224,18 +224,16 @@ def stamp(limits: StampLimits, x_start: float = 0.0, x_end: float = 0.0) -> Stam
 
 def _check(limits: StampLimits, x_start: float, x_end: float) -> None:
     """Refuse values that the sweeps are not made for."""
-    interval = kernels.first_unsound_length(limits.spacing)
+    interval, knot, row = kernels.first_unsound(limits.spacing, limits.ceiling, limits.rows)
     if interval >= 0:
         length = limits.spacing[interval]
         raise InputError(f"interval {interval} has length {length}; it must be positive")
-    knot = kernels.first_unsound_ceiling(limits.ceiling)
     if knot >= 0:
         raise InputError(f"the ceiling at knot {knot} is {limits.ceiling[knot]}; it must be ≥ 0")
     if not (0.0 <= x_start < np.inf and 0.0 <= x_end < np.inf):
         raise InputError(f"x_start = {x_start} and x_end = {x_end} must be finite and ≥ 0")
-    unsound = kernels.first_unsound_row(limits.rows)
-    if unsound >= 0:
-        _refuse_row(limits, unsound)
+    if row >= 0:
+        _refuse_row(limits, row)
 
 
 def _refuse_row(limits: StampLimits, index: int) -> None:

@@ -46,8 +46,24 @@ class StampRows(NamedTuple):
 
 
 @lean
-def first_unsound_row(rows: StampRows) -> int:
-    """Flat index of the first row that is not finite or forbids u = x = 0; -1 if all are sound."""
+def first_unsound(
+    spacing: FloatArray, ceiling: FloatArray, rows: StampRows
+) -> tuple[int, int, int]:
+    """What is first among values that the sweeps are not made for; -1 where all are sound.
+
+    Returns:
+        Indices: of the first length that is not positive and finite; of the first ceiling that is
+        not at least zero; of the first row, counted flat, that is not finite or forbids u = x = 0.
+    """
+    length = knot = -1
+    for k in range(spacing.shape[0]):
+        if not (spacing[k] > 0.0 and spacing[k] < np.inf):
+            length = k
+            break
+    for k in range(ceiling.shape[0]):
+        if not ceiling[k] >= 0.0:
+            knot = k
+            break
     a, b, lower, upper = rows
     for k in range(a.shape[0]):
         for end in range(2):
@@ -55,26 +71,8 @@ def first_unsound_row(rows: StampRows) -> int:
                 # 0 · v is 0 for a finite v only.
                 finite = a[k, end, r] * 0.0 + b[k, end, r] * 0.0 == 0.0
                 if not (finite & (lower[k, end, r] <= 0.0) & (upper[k, end, r] >= 0.0)):
-                    return int((2 * k + end) * a.shape[2] + r)
-    return -1
-
-
-@lean
-def first_unsound_length(spacing: FloatArray) -> int:
-    """Index of the first value that is not positive and finite, -1 if there is none."""
-    for k in range(spacing.shape[0]):
-        if not (spacing[k] > 0.0 and spacing[k] < np.inf):
-            return k
-    return -1
-
-
-@lean
-def first_unsound_ceiling(ceiling: FloatArray) -> int:
-    """Index of the first value that is not at least zero, -1 if there is none."""
-    for k in range(ceiling.shape[0]):
-        if not ceiling[k] >= 0.0:
-            return k
-    return -1
+                    return length, knot, (2 * k + end) * a.shape[2] + r
+    return length, knot, -1
 
 
 @njit(cache=True, error_model="numpy")

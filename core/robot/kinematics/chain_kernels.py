@@ -69,7 +69,7 @@ def _finish(chain: Chain, turned: Rotation, at: Vector, R: FloatArray, p: FloatA
     p[0], p[1], p[2] = add(at, turn(turned, load(chain.end_translation)))
 
 
-@lean
+@inner
 def pose(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     """The TCP in the work object's frame.
 

@@ -11,7 +11,7 @@ import numpy as np
 from ....core.arrays import FloatArray
 from ....core.motion.path.path import Path
 from ....core.robot.kinematics.chain import Chain
-from ....core.robot.kinematics.chain_kernels import jacobian, pose
+from ....core.robot.kinematics.chain_kernels import jacobian, poses
 from ....core.spatial.rotation import rotation_vector, skew
 from .blocks import MoveBlock
 from .options import WaypointTask
@@ -41,8 +41,7 @@ class PointRow:
     def value(self, path: Path) -> float:
         """What is to be zero or more."""
         q = path.segments.ends.q[self.waypoint - 1, 1]
-        R, p = np.empty((3, 3)), np.empty(3)
-        pose(self.chain, np.ascontiguousarray(q), R, p)
+        (R,), (p,) = poses(self.chain, np.ascontiguousarray(q)[None])
         return self.measure(p, R)[0]
 
     def slope(self, path: Path, waypoints: FloatArray) -> FloatArray:
@@ -78,8 +77,7 @@ def point_rows(block: MoveBlock, path: Path, task: WaypointTask) -> tuple[PointR
                 continue
             chain = path.route.chains[waypoint[move] - 1]
             q = np.ascontiguousarray(path.segments.ends.q[waypoint[move] - 1, 1])
-            R, p = np.empty((3, 3)), np.empty(3)
-            pose(chain, q, R, p)
+            (R,), (p,) = poses(chain, q[None])
             bounded = isinstance(part, PosePoint)
             rows += [
                 PointRow(waypoint[move], chain, measure)

@@ -16,7 +16,6 @@ from flyby.core.robot.kinematics.chain_kernels import (
     jacobians,
     motion,
     motions,
-    pose,
     poses,
     velocity_gradient,
 )
@@ -87,8 +86,7 @@ def motion_at(
 @given(moving_chains())
 def test_pose_is_the_product_of_the_chain(case) -> None:
     chain, q, *_ = case
-    R, p = np.empty((3, 3)), np.empty(3)
-    pose(chain, q, R, p)
+    (R,), (p,) = poses(chain, q[None])
     expected_R, expected_p = product(chain, q)
     np.testing.assert_allclose(R, expected_R, atol=1e-13)
     np.testing.assert_allclose(p, expected_p, atol=1e-12)
@@ -206,8 +204,7 @@ def test_batches_repeat_the_scalar_kernels() -> None:
     J = jacobians(chain, q)
     v, a = motions(chain, q, dq, ddq)
     for m in range(9):
-        expected_R, expected_p = np.empty((3, 3)), np.empty(3)
-        pose(chain, q[m], expected_R, expected_p)
+        (expected_R,), (expected_p,) = poses(chain, q[m : m + 1])
         expected_v, expected_a = motion_at(chain, q[m], dq[m], ddq[m])
         np.testing.assert_array_equal(R[m], expected_R)
         np.testing.assert_array_equal(p[m], expected_p)
