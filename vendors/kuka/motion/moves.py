@@ -87,18 +87,24 @@ class MotionReader:
         Raises:
             SourceError: it cannot be emulated, or a value is not known.
         """
+        if not motion.settings:  # as most have none
+            self._read(motion, scope)
+            return
         with self.settings_of(motion.settings, scope):
-            try:
-                self._drive(motion, scope)
-            except LeftOpenError as error:
-                self.evaluator.reader = ELSEWHERE
-                for target in motion.targets[1:]:  # an arc asks for both of its points at once
-                    with suppress(SourceError):
-                        value = self.evaluator.evaluate(target, scope)
-                        self.evaluator.used_as(value, "e6pos")
-                self.triggers.end()
-                self.transcript.leave_out(motion.span, error)
-                self.position.left_out(motion.span)
+            self._read(motion, scope)
+
+    def _read(self, motion: MotionInstruction, scope: Scope) -> None:
+        try:
+            self._drive(motion, scope)
+        except LeftOpenError as error:
+            self.evaluator.reader = ELSEWHERE
+            for target in motion.targets[1:]:  # an arc asks for both of its points at once
+                with suppress(SourceError):
+                    value = self.evaluator.evaluate(target, scope)
+                    self.evaluator.used_as(value, "e6pos")
+            self.triggers.end()
+            self.transcript.leave_out(motion.span, error)
+            self.position.left_out(motion.span)
 
     @contextmanager
     def settings_of(self, settings: Sequence[Assign], scope: Scope) -> Iterator[None]:

@@ -16,7 +16,7 @@ from ....core.robot.joint import JointKind
 from ....core.robot.model import Robot
 from ....core.source.text.axis_values import arm_values, cell_axis
 from ....core.source.text.quick import quick
-from ..values.frames import pose_of
+from ..values.frames import placed
 from ..values.provenance import Sources
 from ..values.types import AXES, AXIS_FIELDS, EXTERNAL_FIELDS, FRAME_FIELDS, external_fields
 from ..values.values import Placement, Struct, Unknown, Value, find_unknown, left_open, shown
@@ -91,7 +91,7 @@ class Targets:
         if status and not via:
             configuration = self._configuration(value.fields, complete, span)
         try:
-            target = PoseTarget(pose_of(numbers), configuration, external, value.label)
+            target = PoseTarget(placed(*numbers.values()), configuration, external, value.label)
         except InputError as error:
             raise SourceError(str(error), span) from None
         sources = Sources.of([value.fields.get(name) for name in POSE_NUMBERS])
@@ -171,7 +171,9 @@ class Targets:
                 given[self._names.index(name)] = number
             elif number != 0:
                 self._no_axis(name.upper(), number, span)
-        last = max(given, default=-1)
+        if not given:
+            return (), {}, False
+        last = max(given)
         kept = any(k not in given for k in range(last + 1))
         for k in range(last + 1):
             if k not in given:
@@ -233,7 +235,7 @@ def _numbers(
 
 
 def _number(name: str, value: Value, span: Span) -> float:
-    if isinstance(value, int | float) and not isinstance(value, bool):
+    if isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool)):
         return float(value)
     unknown = find_unknown(value)
     if unknown is not None:

@@ -15,13 +15,17 @@ def pose_of(fields: Mapping[str, Value]) -> Pose:
     Raises:
         InputError: a number is not finite.
     """
-    x, y, z, a, b, c = (number_or_zero(fields.get(name)) for name in "xyzabc")
+    return placed(*map(number_or_zero, map(fields.get, "xyzabc")))
+
+
+def placed(x: float, y: float, z: float, a: float, b: float, c: float) -> Pose:
+    """The same of numbers that are all there."""
     return Pose((x / 1000, y / 1000, z / 1000), quaternion(a, b, c))
 
 
 def number_or_zero(value: Value | None) -> float:
     """A component; one that is not set, or not known, counts as 0."""
-    return float(value) if isinstance(value, int | float) else 0.0
+    return float(value) if isinstance(value, (float, int)) else 0.0
 
 
 def frame_of(pose: Pose, type_name: str = "frame") -> Struct:

@@ -35,13 +35,14 @@ def flat_literal(
     root = inside or Root(node.source, node.start, node.end, datum)
     type_name = RECORD_TYPE.match(text, node.start, node.end)
     made: dict[str, Value] = {}
+    leaves = root.leaves
     for found in ITEM.finditer(text, node.start, node.end):
-        name, kind = found["name"].lower(), found.lastgroup
-        start, end = found.span(kind or 0)
+        name, kind = found[1].lower(), found.lastgroup
+        start, end = found.span(found.lastindex or 0)
         item = text[start:end]
         if kind == "number":
-            path = f"{prefix}{name}" if prefix else name
-            root.leaves[path] = (start, end)
+            path = prefix + name
+            leaves[path] = (start, end)
             made[name] = numeral(_signed(node, item, start, end), Leaf(root, path))
         elif kind == "enum":
             made[name] = Choice(item.lower())

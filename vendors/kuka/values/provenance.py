@@ -13,25 +13,17 @@ from .values import Leaf, Root, Value, leaf_of
 class LeafSource:
     """One number of a literal, or one literal number."""
 
-    __slots__ = ("_leaf",)
+    __slots__ = ("_leaf", "root", "span")
 
     def __init__(self, leaf: Leaf) -> None:
         self._leaf = leaf
+        self.root = leaf.root.span
+        self.span = leaf.root.part(leaf.component) or self.root
 
     @property
     def key(self) -> tuple[int, str]:
         """The same for the same number of the same literal."""
         return id(self._leaf.root), self._leaf.component
-
-    @property
-    def span(self) -> Span:
-        """Of the number."""
-        return self._leaf.root.part(self._leaf.component) or self._leaf.root.span
-
-    @property
-    def root(self) -> Span:
-        """Of the literal that it is part of, or is."""
-        return self._leaf.root.span
 
     @property
     def datum(self) -> str | None:
@@ -110,13 +102,14 @@ class Sources:
 
         If one aggregate holds them all, it is the one source.
         """
-        known = [value for value in values if value is not None]
         leaves = [None if value is None else leaf_of(value) for value in values]
-        programmed = [leaf for leaf in leaves if leaf is not None]
-        if not programmed:
+        first = next(filter(None, leaves), None)
+        if first is None:
             return cls(())
-        root = programmed[0].root
-        one = len(programmed) == len(known) and all(leaf.root is root for leaf in programmed)
-        if one and programmed[0].component:
+        root, one = first.root, bool(first.component)
+        for value, leaf in zip(values, leaves, strict=True):
+            if value is not None and (leaf is None or leaf.root is not root):
+                one = False
+        if one:
             return cls((RecordSource(leaves, root),))
         return cls(tuple(None if leaf is None else LeafSource(leaf) for leaf in leaves))

@@ -161,7 +161,10 @@ def _struct(value: Struct, type_name: str, fields: Mapping[str, str], types: Typ
             if value.type and type_name in POSES | AXES:
                 continue  # an E6POS handed to a POS or FRAME
             raise no_component(type_name, name, fields)
-        if wanted in ("", "char") or isinstance(part, Array | Choice):
+        if (wanted == "real" and isinstance(part, float)) or wanted in ("", "char"):
+            made[name] = part
+            continue
+        if isinstance(part, Array | Choice):
             made[name] = part
             continue
         try:

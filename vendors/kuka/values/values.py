@@ -96,7 +96,10 @@ class Whole(int):
 
 def leaf_of(value: object) -> Leaf | None:
     """The place that a number was read from; None for a computed one."""
-    return value.leaf if isinstance(value, Real | Whole) else None
+    return value.leaf if isinstance(value, _PLACED) else None
+
+
+_PLACED = (Real, Whole)
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,8 +230,15 @@ def find_unknown(value: Value | Pending) -> Unknown | None:
     if isinstance(value, Unknown):
         return value
     if isinstance(value, Struct):
-        return next(filter(None, map(find_unknown, value.fields.values())), None)
+        for part in value.fields.values():
+            if isinstance(part, _HOLDING):  # few are
+                found = find_unknown(part)
+                if found is not None:
+                    return found
     return None
+
+
+_HOLDING = (Unknown, Struct)
 
 
 def left_open(what: str, unknown: Unknown, span: Span) -> LeftOpenError:
