@@ -33,6 +33,9 @@ from flyby.core.source.text.files import SourceFile, decode
 from flyby.testing.hostile import HUGE, NUMBER, ODD, OPENERS
 
 SECONDS = 1.0
+HANGS = 20.0
+"""s of CPU time after which a reader is ended. Before, it is not disturbed: what it uses for the
+first time (a kernel that is compiled) may be in the midst of loading."""
 MEGABYTES = 500
 LOADING = 900.0
 """s of wall time in which a process reads the corpus."""
@@ -227,7 +230,8 @@ def _over(*_: object) -> None:
 def attempt(seeds: Seeds, case: str, number: int) -> Failure | None:
     """Read one input within the bounds of this process.
 
-    What took too long is read once more: a machine that stalled is no failure of the reader.
+    What took too long is read once more: a machine that stalled, or what is loaded at the first
+    use, is no failure of the reader.
     """
     reading, name, file = damaged(seeds, case, number)
     what = _in_time(reading, name, file)
@@ -246,7 +250,8 @@ def _in_time(reading: Reading, name: str, file: SourceFile) -> str:
 
 def _read(reading: Reading, name: str, file: SourceFile) -> str:
     """What a reader did wrong; empty if nothing."""
-    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    signal.setitimer(signal.ITIMER_PROF, HANGS)
+    begun = time.process_time()
     try:
         program = reading.again({name: file})
         what = "" if isinstance(program, Program) else f"gave {type(program).__name__}"
@@ -262,7 +267,7 @@ def _read(reading: Reading, name: str, file: SourceFile) -> str:
         what = f"{type(error).__name__} at {where}: {str(error)[:200]}"
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
-    return what
+    return what or (_TOO_SLOW if time.process_time() - begun > SECONDS else "")
 
 
 def bounded() -> None:
