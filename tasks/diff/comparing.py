@@ -163,11 +163,15 @@ def _called_as(other: StationState, one: StationState) -> Mapping[str, str]:
 
 
 def _once(found: list[Difference]) -> list[Difference]:
-    """Differences, those of one line in several routines once."""
+    """Differences, those of one line in several routines once; a tool that programs and their
+    station call otherwise, by both names."""
     seen: dict[object, Difference] = {}
     for k, one in enumerate(found):
-        place = k if one.span is None else one.span
-        seen.setdefault((one.subject, place, one.before, one.after), one)
+        place = one.span or (None if one.subject is Differing.TOOL else k)
+        key = (one.subject, place, one.before, one.after)
+        known = seen.setdefault(key, one)
+        if one.name not in known.name.split(", ") and place is None:
+            seen[key] = replace(known, name=f"{known.name}, {one.name}")
     return list(seen.values())
 
 

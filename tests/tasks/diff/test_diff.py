@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -103,6 +104,17 @@ def test_folders_of_program_trees_are_driven_and_compared(build: Build, tmp_path
     assert routine.times[0] > routine.times[1] > 0.5 and routine.distance > 1e-3
     assert [d.subject for d in found.differences] == [Differing.ZONE]
     assert [(file.name, file.added) for file in found.files] == [("job.urp", 1)]
+
+
+def test_a_tool_with_two_names_is_said_once(build: Build, tmp_path: Path) -> None:
+    """Its program calls it tcp, the installation gripper."""
+    steps = build.fixed("A", (0.1, -1.4, 1.6, -1.8, -1.5, 0.2))
+    longer = re.sub(r'offset="[^"]*"', 'offset="0, 0, 0.5, 0, 0, 0"', build.installation())
+    for name, installation in (("a", build.installation()), ("b", longer)):
+        build.packed(tmp_path / name / "default.installation", installation)
+        build.packed(tmp_path / name / "job.urp", build.program(build.move(steps)))
+    tools = [d for d in flyby.diff(tmp_path / "a", tmp_path / "b").differences if d.distance]
+    assert [one.name for one in tools if one.subject is Differing.TOOL] == ["tcp, gripper"]
 
 
 def test_what_stands_beside_a_program_counts_in_folders_that_are_named(tmp_path: Path) -> None:
