@@ -13,6 +13,7 @@ from itertools import islice
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
+from ...core.door import called
 from ...core.errors import InputError, Note
 from ...core.files.archive import is_archive, unpack
 
@@ -110,6 +111,11 @@ def no_backup(path: str | Path, registry: Registry) -> InputError:
     what = "folder" if folder else "file"
     names = names_below(Path(path)) if folder else [Path(path).name]
     of = {name for vendors in _programs(names, registry).values() for name in vendors}
+    if of and not folder and Path(path).suffix.casefold() not in _TEXTS:
+        return InputError(
+            f"{path}: is a program, and no backup: {called('emulate', str(path))} drives it; name "
+            "the folder that it lies in, or the backup around it, to see what is there"
+        )
     if len(of) > 1:
         return InputError(
             f"{path}: programs of {' and '.join(sorted(of))} are in this {what}, and no backup: "

@@ -173,6 +173,12 @@ def test_the_only_archive_in_a_folder_is_opened(tmp_path: Path) -> None:
     assert opened(folder).root == folder
 
 
+def test_a_program_alone_is_no_backup(tmp_path: Path) -> None:
+    folder = _made(tmp_path, "a.mod")
+    said = str(no_backup(folder / "a.mod", ONE))
+    assert "is a program, and no backup" in said and "flyby.emulate" in said
+
+
 def test_other_archives_are_named(tmp_path: Path) -> None:
     _made(tmp_path, "cell.7z", "old.tar.gz")
     said = str(no_backup(tmp_path, ONE))
