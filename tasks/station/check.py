@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 
 from ..check import CheckOptions, check_with
 from ..options.keywords import by_keywords
-from ..setup import setup_of_program
 from .station import StationOptions, station_with
+from .taken import carried_out
 
 if TYPE_CHECKING:
-    from ...core.errors import Span
-    from ...core.station.station import StationRobot
     from .findings import StationFindings
 
 
@@ -46,33 +44,14 @@ def station_check_with(source: str | Path, options: StationCheckOptions) -> Stat
     found = {}
     for name, member in driven.station.members.items():
         options.say(f"checking {name}")
-        known = {action.span for action in driven.actions[name]}
         found[name] = Findings(
             # What the station carries out is nothing odd.
             finding
             for finding in check_with(member.program, CheckOptions())
             if finding.rule != _READER
-            or not (finding.span in known or _answered(member, finding.span))
+            or not carried_out(member, driven.actions[name], finding.span)
         )
     return StationFindings(driven, found)
-
-
-def _answered(member: StationRobot, span: Span | None) -> bool:
-    """Whether the station knows what a program by itself leaves open at a place: with which moves
-    of others one is made together, and what turns its work object."""
-    from ...core.source.reading import Reading
-
-    reading = member.program.reading
-    if span is None or not isinstance(reading, Reading) or span.file not in reading.files:
-        return False
-    text = reading.files[span.file].text[span.start : span.end]
-    speaks = setup_of_program(member.program).vendor.speaks
-    words = None if speaks is None else speaks.signals
-    if words is not None and words.together is not None and words.together(text) is not None:
-        return True
-    turned = {axis for moves in member.carried for axis in moves.axes.values()}
-    frames = (move.work_object for move in member.program.moves)
-    return text.casefold() in {f.name.casefold() for f in frames if f.moved_by in turned}
 
 
 station_check = by_keywords(station_check_with, StationCheckOptions)

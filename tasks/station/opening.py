@@ -13,6 +13,7 @@ from ..setup import start_of
 from .members import ReadMember, drive_members, read_member
 from .names import check_names
 from .own_parts import check_own_parts
+from .taken import taken_notes
 
 if TYPE_CHECKING:
     from ...core.dialect import SignalWords
@@ -145,6 +146,9 @@ def open_station(
                 "each robot, with its task"
             )
         )
+    taken = [note for name, one in members.items() for note in taken_notes(one, actions[name])]
+    unknown += [note for note in taken if note.damage]
+    notes += [note for note in taken if not note.damage]
     notes += [*shared.notes, *_alone(actions), *_passed(actions, members)]
     return OpenedStation(station, actions, tuple(unknown), tuple(notes))
 
