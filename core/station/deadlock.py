@@ -9,9 +9,15 @@ from ..errors import Span
 from ..program.signal import Level, Meet, SetSignal, WaitSignal, levels
 from .actions import Action
 from .clock import Spell, StationClock, StationRun
-from .gates import Gate, GateKind, Input
 from .plc import PLC
-from .station import RobotStation, levels_at_start, signal_key
+from .station import (
+    Gate,
+    GateKind,
+    Input,
+    RobotStation,
+    levels_at_start,
+    signal_key,
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,9 +20,15 @@ from ..collision.mutual.meetings import Together
 from ..errors import InputError
 from ..program.signal import Condition, Joined, Meet, SetSignal, WaitSignal
 from .actions import Action
-from .gates import Gate, GateKind, Input
 from .plc import PLC, ROUNDS
-from .station import RobotStation, levels_at_start, signal_key
+from .station import (
+    Gate,
+    GateKind,
+    Input,
+    RobotStation,
+    levels_at_start,
+    signal_key,
+)
 
 _MOST_STATES = 300_000
 _ON_THE_WAY = 8

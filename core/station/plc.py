@@ -6,8 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..errors import InputError
-from .gates import Gate, GateKind, Input
-from .station import signal_key
+from .station import (
+    Gate,
+    GateKind,
+    Input,
+    signal_key,
+)
 
 PLC = "plc"
 """What gates are outputs of."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,6 @@ from ..program.tool import Load
 from ..program.world_zone import WorldZone
 from ..spatial.pose import IDENTITY, Pose
 from .actions import Action
-from .gates import Gate
 
 Driven = tuple[Run, tuple[Action, ...]]
 """A program as driven, and what it does with signals."""
@@ -184,6 +184,57 @@ class Wire:
     def usual(self) -> float:
         """s that a change takes where one figure is asked for."""
         return 0.5 * (self.least + self.greatest)
+
+
+class GateKind(StrEnum):
+    """What a gate makes of its inputs."""
+
+    AND = "and"
+    OR = "or"
+    LATCH = "latch"
+    COUNTER = "counter"
+    TIMER = "timer"
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A signal that a gate looks at.
+
+    Args:
+        name: ``robot.signal`` or ``plc.gate``.
+        on: whether it counts when it is on; else when it is off (``not …``).
+    """
+
+    name: str
+    on: bool = True
+
+    @classmethod
+    def read(cls, text: str) -> Input:
+        """From ``left.doInside`` or ``not left.doInside``."""
+        words = text.split(maxsplit=1)
+        if len(words) == 2 and words[0].casefold() == "not":
+            return cls(words[1].strip(), False)
+        return cls(text.strip())
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """One output of the PLC, called ``plc.NAME``.
+
+    Args:
+        kind: see `GateKind`.
+        inputs: of AND and OR all; of a latch what sets it; of a counter what is counted, at each
+            rise; of a timer what has to be on for a while.
+        resets: what sets a latch back, which wins, or a counter to zero.
+        least: of a counter the number from which on it is on.
+        delay: of a timer, s that its input is on before it is.
+    """
+
+    kind: GateKind
+    inputs: tuple[Input, ...]
+    resets: tuple[Input, ...] = ()
+    least: int = 1
+    delay: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,9 +15,16 @@ from ..files.tables import LENGTH, TomlTable
 from ..program.world_zone import WorldZone
 from ..robot.pose_table import pose_at
 from ..spatial.pose import IDENTITY, Pose
-from .gates import Gate, GateKind, Input
 from .plc import PLC
-from .station import HandOver, HeldTogether, Wire, signal_key
+from .station import (
+    Gate,
+    GateKind,
+    HandOver,
+    HeldTogether,
+    Input,
+    Wire,
+    signal_key,
+)
 
 _DELAY = {"ms": 1e-3, "s": 1.0}
 _LONGEST = 60.0

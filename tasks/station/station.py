@@ -14,7 +14,8 @@ from ..options.keywords import by_keywords
 from .opening import open_station
 
 if TYPE_CHECKING:
-    from ...core.station.clearances import PairClearance
+    from ...core.station.clearances import PairClearance, StationProver
+    from ...core.station.clock import StationRun
     from ...core.station.interlocks import Saving
     from ...core.station.passing import Passed
     from ..results.stations import DrivenStation
@@ -26,6 +27,9 @@ _UNSURE = (
     "no more is proven than at any time"
 )
 
+_FIRST = (
+    "which robot comes first hangs on less than the jitter: in time is what is proven of each order"
+)
 _SHAPELESS = (
     "{}: its cell has no shape of what it turns, and nothing is said of its clearances: give the "
     "table and what lies on it as [[obstacle]] with carried_by"
@@ -64,6 +68,7 @@ def station_with(
     from ...core.station.clearances import StationProver
     from ...core.station.clock import StationClock
     from ...core.station.deadlock import deadlock
+    from ...core.station.early_late import other_orders
     from ...core.station.interlocks import savings
     from ...core.station.orders import explore
     from ...core.station.passing import passed_in_time
@@ -96,9 +101,18 @@ def station_with(
             # Any of the paths may be driven then.
             clearances = [replace(pair, in_time=pair.any_time) for pair in clearances]
             notes.append(Note(_UNSURE))
+        others = other_orders(station, actions, run, options.jitter)
+        for other in others:
+            clearances = _both(clearances, prover, other, options.jitter)
         for passed in quicker or ():
             options.say("the same where robots pass through zones that waits stand behind")
-            clearances = _both(clearances, passed, options.jitter)
+            through = _prover_of(passed)
+            more = other_orders(passed.station, passed.actions, passed.run, options.jitter)
+            for other in (passed.run, *more):
+                clearances = _both(clearances, through, other, options.jitter)
+            others += more
+        if others:
+            notes.append(Note(_FIRST))
     found: list[Saving] = []
     if options.interlocks and orders is not None and clearances:
         options.say("looking for interlocks that hold robots up needlessly")
@@ -122,23 +136,27 @@ def station_with(
     )
 
 
-def _both(
-    clearances: Sequence[PairClearance], passed: Passed, jitter: float
-) -> list[PairClearance]:
-    """Clearances in time of both: where robots stop for all waits, and where they pass in time."""
+def _prover_of(passed: Passed) -> StationProver:
+    """Of robots that pass through zones, which then are their only paths."""
     from ...core.station.awaited import bearing
     from ...core.station.clearances import StationProver
 
-    station, actions, run = passed
+    station, actions, _ = passed
     bare = {name: replace(robot, passing=None) for name, robot in station.members.items()}
-    prover = StationProver(replace(station, members=bare), bearing(station, actions))
+    return StationProver(replace(station, members=bare), bearing(station, actions))
+
+
+def _both(
+    clearances: Sequence[PairClearance], prover: StationProver, run: StationRun, jitter: float
+) -> list[PairClearance]:
+    """Clearances in time of both: as they are known, and of another run."""
     found = []
     for pair in clearances:
-        quicker = prover.in_time(*pair.robots, run, jitter)
-        if pair.in_time.proven and not quicker[0].proven:
-            pair = replace(pair, in_time=quicker[0])
-        if quicker[1] < pair.least:
-            pair = replace(pair, least=quicker[1], least_at=quicker[2])
+        other, least, at = prover.in_time(*pair.robots, run, jitter)
+        if pair.in_time.proven and not other.proven:
+            pair = replace(pair, in_time=other)
+        if least < pair.least:
+            pair = replace(pair, least=least, least_at=at)
         found.append(pair)
     return found
 

@@ -29,6 +29,7 @@ from ....core.station.clearances import StationProver
 from ....core.station.clock import StationClock, StationRun
 from ....core.station.conflict_words import conflict_said
 from ....core.station.deadlock import deadlock
+from ....core.station.early_late import other_orders
 from ....core.station.orders import Orders, explore
 from ....core.station.station import RobotStation
 from ....core.station.world_zones import with_zones
@@ -288,9 +289,15 @@ class StationFeasibility:
                     return None
                 return state.prover.interlocked(*pair, state.orders, state.ordered)
             case _Keeping.TIMES:
-                one, other = (state.run.schedules[name].clocked for name in pair)
-                meetings = Meetings((one, other), 2.0 * self._jitter, every=False)
-                return prover.prove(clearance, meetings)
+                verdict = PairVerdict(clearance)
+                others = other_orders(state.station, state.actions, state.run, self._jitter)
+                for run in (state.run, *others):
+                    one, other = (run.schedules[name].clocked for name in pair)
+                    meetings = Meetings((one, other), 2.0 * self._jitter, every=False)
+                    verdict = prover.prove(clearance, meetings)
+                    if not verdict.proven:
+                        break
+                return verdict
 
     def _certificate(
         self, state: StationSnapshot, name: str, pair: Pair, conflict: Conflict

@@ -14,9 +14,15 @@ from flyby.core.program.signal import Level, Meet, SetSignal, WaitSignal
 from flyby.core.station.actions import Action
 from flyby.core.station.awaited import bearing
 from flyby.core.station.clock import StationClock
-from flyby.core.station.gates import Gate, GateKind, Input
 from flyby.core.station.orders import explore
-from flyby.core.station.station import ClockPace, RobotStation, Wire
+from flyby.core.station.station import (
+    ClockPace,
+    Gate,
+    GateKind,
+    Input,
+    RobotStation,
+    Wire,
+)
 
 Doings = dict[str, tuple[Action, ...]]
 
