@@ -19,6 +19,9 @@ _FAST, _GROW, _SHRINK = 100.0, 8.0, 1.0 / 3.0
 _CREEP, _CREEPS = 0.1, 5
 """Largest change of a variable, in its size, below which a step of a shifted system may creep, and
 how many of them in a row do."""
+_LEAP, _SHORTENING, _SHORTER = 100.0, 1e-2, 0.1
+"""Largest change of a variable, in its size, from which on the first step leaps, the shift that may
+shorten it, and to which share it has to."""
 _DEPENDENT = 1e-8
 _BAD = 1e-6
 _LARGEST_FIRST = 1e3
@@ -84,6 +87,7 @@ class Newton:
         self.shift = 0.0
         self.creeps = 0
         self._relative = False
+        self._begun = False
 
     def _system_of(self, H: Sparsity, A: Sparsity) -> BarrierSystem:
         if self._known is None or self._known[0] is not H or self._known[1] is not A:
@@ -99,6 +103,9 @@ class Newton:
         """
         self.factorise(place, H)
         step, slope = self.step(mu)
+        if not self._begun:
+            self._begun = True
+            step, slope = self._shortened(place, mu, step, slope)
         if self._relative or self.shift == 0.0:
             self.creeps = 0
             return step, slope
@@ -109,6 +116,23 @@ class Newton:
         self._relative = True
         self.factorise(place, H)
         return self.step(mu)
+
+    def _shortened(
+        self, place: Place, mu: float, step: InteriorIterate, slope: float
+    ) -> tuple[InteriorIterate, float]:
+        """The first step, or a shifted one where that is far shorter: as long as multipliers are a
+        guess, nothing may curve along what the rows leave free, and rounding decides how far
+        Newton's step leaps there. A leap that the rows ask for no shift shortens."""
+        x, shift = place.point.x, self.shift
+        size = largest_change(step.v, x)
+        if size <= _LEAP or shift >= _SHORTENING:
+            return step, slope
+        if self._again(_SHORTENING):
+            found, along = self.step(mu)
+            if largest_change(found.v, x) <= _SHORTER * size:
+                return found, along
+        self._again(shift)
+        return step, slope
 
     def factorise(self, place: Place, H: SparseMatrix) -> None:
         """Factorise with the least shift, of a growing sequence, that gives the right inertia

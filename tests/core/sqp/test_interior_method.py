@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flyby.core.sqp import NLP, Iteration, NlpError, Status, solve
-from flyby.validation.textbook import MAZE, DoubleIntegrator, PointMass, minimum_time
+from flyby.validation.textbook import GARDEN, MAZE, DoubleIntegrator, PointMass, minimum_time
 
 from . import hock_schittkowski, hock_schittkowski_large, hock_schittkowski_medium
 from .honesty import solved
@@ -80,6 +80,21 @@ def test_a_maze_from_the_straight_line() -> None:
     problem = PointMass(MAZE, 40)
     result = solved(problem.nlp(), problem.straight_line())
     assert result.status is Status.OPTIMAL
+
+
+@pytest.mark.parametrize("nodes", [200, 1500])
+def test_the_first_step_does_not_leap(nodes: int) -> None:
+    """On a fine grid the multipliers of least squares are too large to begin with, and without them
+    nothing curves along the forces: Newton's step is a blow at the start, the higher the finer."""
+    problem = PointMass(GARDEN, nodes)
+    seen: list[Iteration] = []
+
+    def first(iteration: Iteration) -> bool:
+        seen.append(iteration)
+        return iteration.kind != ""
+
+    solve(problem.nlp(), problem.straight_line(), callback=first)
+    assert 0.0 < seen[-1].step <= 100.0
 
 
 def test_an_infeasible_problem_is_proven_so() -> None:
