@@ -14,7 +14,7 @@ from ...program.move import Move
 from ...program.program import Program
 from ...program.target import JointTarget
 from ...robot.joint import JointKind
-from ...robot.kinematics.orientations import fill_quaternions
+from ...robot.kinematics.chain_kernels import fill_quaternions
 from ...robot.model import Robot
 from ...vendor import Vendor
 from ..command.commanded_motion import commanded_motion, stretches
@@ -364,13 +364,12 @@ class Controller:
         """TCP in the world; of a stationary tool, in the work object."""
         position, quaternion = np.empty((len(q), 3)), np.empty((len(q), 4))
         chains = [self._routes.world_chain(move.tool, move.work_object) for move in moves]
-        rotation = np.empty((3, 3))
         owner = np.array([id(chain) for chain in chains])[segment]
         for stretch in stretches(t):
             changes = stretch.start + 1 + np.flatnonzero(np.diff(owner[stretch]))
             for first, last in pairwise([stretch.start, *map(int, changes), stretch.stop]):
                 chain, part = chains[segment[first]], slice(first, last)
-                fill_quaternions(chain, q[part], rotation, quaternion[part], position[part])
+                fill_quaternions(chain, q[part], quaternion[part], position[part])
         return position, quaternion
 
     def _excess_notes(self, program: Program, timing: Timing, trajectory: Trajectory) -> list[Note]:

@@ -19,6 +19,7 @@ from numba import njit
 from ...arrays import FloatArray
 from .chain import Chain
 from .lean import inlined, inner, lean
+from .orientations import write_quaternion
 from .vectors import (
     UNTURNED,
     ZERO,
@@ -36,6 +37,8 @@ from .vectors import (
     subtract,
     turn,
 )
+
+_NO_QUATERNIONS = np.empty((0, 4))
 
 
 @inlined
@@ -388,11 +391,26 @@ def poses(chain: Chain, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     return R, p
 
 
-@lean
 def fill_poses(chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray) -> None:
     """Write what `poses` gives."""
+    _fill_poses(chain, q, R, p, _NO_QUATERNIONS)
+
+
+def fill_quaternions(chain: Chain, q: FloatArray, quaternions: FloatArray, p: FloatArray) -> None:
+    """Write orientations (M, 4), as quaternions, and positions (M, 3) m of configurations."""
+    _fill_poses(chain, q, np.empty((1, 3, 3)), p, quaternions)
+
+
+@lean
+def _fill_poses(
+    chain: Chain, q: FloatArray, R: FloatArray, p: FloatArray, quaternions: FloatArray
+) -> None:
+    """Rotations and quaternions are written where there is room for them."""
     for m in range(q.shape[0]):
-        pose(chain, q[m], R[m], p[m])
+        rotation = R[m if m < R.shape[0] else 0]
+        pose(chain, q[m], rotation, p[m])
+        if m < quaternions.shape[0]:
+            write_quaternion(rotation, quaternions[m])
 
 
 @njit(cache=True, error_model="numpy")

@@ -10,8 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from flyby.core.arrays import FloatArray
 from flyby.core.registry import find_robot
-from flyby.core.robot.kinematics.chain_kernels import poses
-from flyby.core.robot.kinematics.orientations import fill_quaternions
+from flyby.core.robot.kinematics.chain_kernels import fill_quaternions, poses
 from flyby.core.spatial.rotation import (
     matrix_from_quaternion,
     matrix_from_rotation_vector,
@@ -61,7 +60,7 @@ def test_orientations_of_configurations_are_those_of_their_matrices(q: FloatArra
     chain = find_robot("ur/ur5e").chain
     R, p = poses(chain, q)
     quaternions, positions = np.empty((5, 4)), np.empty((5, 3))
-    fill_quaternions(chain, q, np.empty((3, 3)), quaternions, positions)
+    fill_quaternions(chain, q, quaternions, positions)
     np.testing.assert_array_equal(positions, p)
     np.testing.assert_allclose(matrix_from_quaternion(quaternions), R, atol=1e-14)
     np.testing.assert_allclose(quaternions, quaternion_from_matrix(R), atol=1e-14)
