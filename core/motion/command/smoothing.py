@@ -107,7 +107,7 @@ class JointMotion:
     def averaged(self, window: float, t: FloatArray, out: States | None = None) -> States:
         """The same of the mean over the last ``window`` > 0 seconds."""
         out = out or _empty(len(t), self.q.shape[1])
-        _fill_averages(self, window, t, *out)
+        _fill_averages(self, window, t, _at_knots(self, t), *out)
         return out
 
 
@@ -165,12 +165,14 @@ class Smoothing:
 def averaged(motion: JointMotion, window: float, step: float) -> JointMotion:
     """The mean over the last ``window`` seconds of a motion, by knots ``step`` apart."""
     if (window, step) not in motion.means:
+        places = 0, 1
         if motion.step == step:
             t = motion.t[0] + step * np.arange(len(motion.t) + int(np.ceil(window / step)))
         else:
             t = even_times(motion.t[0], motion.t[-1] + window, step)
+            places = _at_knots(motion, t)
         q, dq = (np.empty((len(t), motion.q.shape[1])) for _ in range(2))
-        _fill_averages(motion, window, t, q, dq, _NOT_WANTED)
+        _fill_averages(motion, window, t, places, q, dq, _NOT_WANTED)
         motion.means[window, step] = JointMotion(t, q, dq, step)
     return motion.means[window, step]
 
@@ -179,31 +181,47 @@ def _fill_averages(
     motion: JointMotion,
     window: float,
     t: FloatArray,
+    places: tuple[int, int],
     q: FloatArray,
     dq: FloatArray,
     ddq: FloatArray,
 ) -> None:
     """Write the mean over a window at times (T,); accelerations where there is room for them.
 
-    Where times stand at every knot, or at each so many, the window begins at the same place of an
-    interval each time: what weighs knots is worked out once.
+    Where times stand at every knot, or at each so many (see `_at_knots`), the window begins at the
+    same place of an interval each time: what weighs knots is worked out once.
     """
-    first, stride = _at_knots(motion, t)
+    first, stride = places
     begin = end = 0
     if stride > 0:
         # Between these the whole window lies in the motion, and behind it goes on.
         back = int(np.ceil(window / motion.step - _SLACK))
         begin = min(max(-((first - back) // stride), 0), len(t))
-        end = min(max(-((first + 1 - len(motion.t)) // stride), begin), len(t))
+        end = min(max((len(motion.t) - 1 - first) // stride, begin), len(t))
     for part in (slice(0, begin), slice(end, len(t))):
         if part.start < part.stop:
             given = motion.t, motion.q, motion.dq, motion.areas, window, t[part]
             _average(*given, q[part], dq[part], ddq[part])
-    if begin < end:
-        interval, since = np.array([0.0, motion.step]), back * motion.step - window
-        knots = first + begin * stride, back, stride
-        out = q[begin:end], dq[begin:end], ddq[begin:end]
-        _fill_means(1.0 / window, interval, since, *knots, motion.q, motion.dq, motion.areas, *out)
+    if begin >= end:
+        return
+    now, size = first + begin * stride, (end - begin) * stride
+
+    def rows(values: FloatArray, at: int) -> FloatArray:
+        """(E, …), of each time the values from a knot on, of which the first N count."""
+        return values[at : at + size].reshape(end - begin, -1)
+
+    _fill_means(
+        1.0 / window,
+        np.array([0.0, motion.step]),
+        back * motion.step - window,
+        motion.q[0],
+        *(rows(motion.q, now - behind) for behind in (0, back, back - 1)),
+        *(rows(motion.dq, now - behind) for behind in (0, back, back - 1)),
+        *(rows(motion.areas, now - behind) for behind in (0, back)),
+        q[begin:end],
+        dq[begin:end],
+        ddq[begin:end],
+    )
 
 
 def _at_knots(motion: JointMotion, t: FloatArray) -> tuple[int, int]:
@@ -211,10 +229,12 @@ def _at_knots(motion: JointMotion, t: FloatArray) -> tuple[int, int]:
     to the next; zero where they do not stand so."""
     if motion.step == 0.0 or len(t) < 2:
         return 0, 0
-    places = (t - motion.t[0]) / motion.step
-    first, stride = round(float(places[0])), round(float(places[1] - places[0]))
-    off = np.abs(places - (first + stride * np.arange(len(t)))).max()
-    return first, stride if off <= _SLACK else 0
+    first, rate = float(t[0] - motion.t[0]) / motion.step, float(t[1] - t[0]) / motion.step
+    at, stride = round(first), round(rate)
+    if abs(rate - stride) > _SLACK:
+        return at, 0
+    off = (t - motion.t[0]) / motion.step - (at + stride * np.arange(len(t)))
+    return at, stride if np.abs(off).max() <= _SLACK else 0
 
 
 def even_times(begin: float, end: float, step: float) -> FloatArray:
@@ -388,30 +408,32 @@ def _fill_means(
     rate: float,
     interval: FloatArray,
     since: float,
-    first: int,
-    back: int,
-    stride: int,
-    q: FloatArray,
-    dq: FloatArray,
+    rest: FloatArray,
+    now: FloatArray,
+    begin: FloatArray,
+    end: FloatArray,
+    now_slope: FloatArray,
+    begin_slope: FloatArray,
+    end_slope: FloatArray,
     area: FloatArray,
+    begin_area: FloatArray,
     position: FloatArray,
     velocity: FloatArray,
     acceleration: FloatArray,
 ) -> None:
-    """At every so many knots from ``first`` on, the window beginning so many knots before each and
-    a while after; accelerations are written where there is room for them."""
+    """The window begins ``since`` after the beginning of an interval, whose ends are given;
+    accelerations are written where there is room for them."""
     w = _cubic(interval, 0, since)
     for i in range(position.shape[0]):
-        now = first + i * stride
-        k, n = now - back, now - back + 1
-        for j in range(q.shape[1]):
-            way, begin, end = q[n, j] - q[k, j], dq[k, j], dq[n, j]
-            passed = since * (q[k, j] - q[0, j]) + w.area * way + w.b0 * begin + w.b1 * end
-            position[i, j] = q[0, j] + rate * (area[now, j] - area[k, j] - passed)
-            gone = w.rise * way + w.v0 * begin + w.v1 * end
-            velocity[i, j] = rate * (q[now, j] - q[k, j] - gone)
+        for j in range(position.shape[1]):
+            first, way = begin[i, j], end[i, j] - begin[i, j]
+            rise, fall = begin_slope[i, j], end_slope[i, j]
+            passed = since * (first - rest[j]) + w.area * way + w.b0 * rise + w.b1 * fall
+            position[i, j] = rest[j] + rate * (area[i, j] - begin_area[i, j] - passed)
+            gone = w.rise * way + w.v0 * rise + w.v1 * fall
+            velocity[i, j] = rate * (now[i, j] - first - gone)
             if i < acceleration.shape[0]:
-                change = dq[now, j] - (w.rate * way + w.d0 * begin + w.d1 * end)
+                change = now_slope[i, j] - w.rate * way - w.d0 * rise - w.d1 * fall
                 acceleration[i, j] = rate * change
 
 
