@@ -20,6 +20,7 @@ _MODULE = re.compile(
 )
 _VERSION = re.compile(r"\s*(RobotWare|RobotControl|BaseWare)\s+(?:OS\s+)?Version\s*:\s*(\S+)", re.I)
 _ARM = re.compile(r"\b(?:IRB|CRB)\s?\d{2,5}[^,;<\"]*")
+_DRIVES = re.compile(r"\s*Drive System\b", re.IGNORECASE)
 _TYPE = re.compile(r"\d{2,5}[A-Z]*-\d[\d.]*/\d[\d.]*")
 """``2600ID-8/2.00``: the type alone, as lists of RobotWare 5 have it behind the series."""
 
@@ -98,9 +99,11 @@ def parse_backinfo(text: str) -> BackInfo:
 
 
 def arms_in(lines: list[str]) -> tuple[str, ...]:
-    """Names of arms among products: ``IRB 4600-40/2.55``."""
+    """Names of arms among products: ``IRB 4600-40/2.55``; drives are for several."""
     names: list[str] = []
     for line in lines:
+        if _DRIVES.match(line):
+            continue
         if _TYPE.fullmatch(line.strip()):
             name = f"IRB {line.strip()}"
             if name not in names and names and name.startswith(names[-1]):

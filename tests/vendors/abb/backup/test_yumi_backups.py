@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -37,8 +38,10 @@ def test_the_arms_names_tell_them_apart_where_types_do_not(tmp_path, kinds) -> N
     assert [one.robot.name for one in opened(yumi(kinds), tmp_path).robots] == NAMES
 
 
-def test_without_moc_the_product_has_two_arms(tmp_path) -> None:
-    folder = yumi().write(tmp_path)
+@pytest.mark.parametrize("drives", [(), ("Drive System IRB 14000", "Drive System IRB 120/140")])
+def test_without_moc_the_product_has_two_arms(tmp_path, drives: tuple[str, ...]) -> None:
+    station = yumi()
+    folder = replace(station, products=(*station.products, *drives)).write(tmp_path)
     (folder / "SYSPAR/MOC.cfg").unlink()
     backup = flyby.open_backup(folder)
     assert [one.robot.name for one in backup.robots] == NAMES
