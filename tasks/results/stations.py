@@ -174,12 +174,15 @@ class DrivenStation:
     def conflict_said(self, pair: PairClearance, conflict: Conflict) -> str:
         """A conflict in a sentence, with both program lines, and when: at one time of the station,
         unless it takes that one of them is late."""
+        schedules = [self.run.schedules[name] for name in pair.robots]
+        # A robot that waits is there for long; beyond the schedule the middles alone are near.
+        timed = conflict in pair.in_time.conflicts.values()
         spans = [
-            self.run.schedules[name].clocked(np.array([[own, own]]))[0]
-            for name, own in zip(pair.robots, conflict.times, strict=True)
+            schedule.clocked(np.array([own if timed else (conflict.time(side),) * 2]))[0]
+            for side, (schedule, own) in enumerate(zip(schedules, conflict.times, strict=True))
         ]
         begin, end = max(span[0] for span in spans), min(span[1] for span in spans)
-        when = f"at {begin:.2f} s"
+        when = f"at {max(begin, 0.0):.2f} s"
         if begin > end + _ONE_TIME:
             both = zip(pair.robots, spans, strict=True)
             when = ", ".join(f"{name} at {span[0]:.3f} s" for name, span in both)

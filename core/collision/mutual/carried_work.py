@@ -57,7 +57,9 @@ class CarriedWork:
         """What is not proven, as of the two robots."""
         both = {own: other for block in self.blocks for own, other in block.items()}
         for found in self.unproven:
-            moves, pair, times = (found.move, both[found.move]), found.pair, found.times
+            moves, pair = (found.move, both[found.move]), found.pair
+            one, other = found.times
+            times = (one, one), (other, other)
             if self.worker:
                 moves, pair, times = moves[::-1], pair[::-1], times[::-1]
             cause = ConflictCause.CARRIED

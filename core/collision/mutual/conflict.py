@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
+
+OwnSpan = tuple[float, float]
 
 
 class ConflictCause(StrEnum):
@@ -40,7 +43,8 @@ class Conflict:
         moves: indices of the moves of the one and of the other.
         pair: names of the bodies.
         distance: m between them; None where it was not measured.
-        times: s, own times of the one and of the other there.
+        times: s, from when until when the one and the other are there, on their own clocks; without
+            end where one has always stood, or stands for ever.
         rows: the intervals of the one and of the other.
         why: more about it.
     """
@@ -49,9 +53,16 @@ class Conflict:
     moves: tuple[int, int]
     pair: tuple[str, str]
     distance: float | None
-    times: tuple[float, float]
+    times: tuple[OwnSpan, OwnSpan]
     rows: tuple[int, int]
     why: str = ""
+
+    def time(self, side: int) -> float:
+        """s, an own time of the one (0) or of the other there: the middle, or the end known."""
+        low, high = self.times[side]
+        if math.isinf(low):
+            return 0.0 if math.isinf(high) else high
+        return low if math.isinf(high) else 0.5 * (low + high)
 
 
 @dataclass

@@ -121,9 +121,7 @@ class PairProver:
                 int(np.flatnonzero(motion.moves == move)[-1])
                 for motion, move in zip(motions, moves, strict=True)
             ]
-            times = [
-                _middle(motion.own_time[row]) for motion, row in zip(motions, rows, strict=True)
-            ]
+            times = [_span(motion.own_time[row]) for motion, row in zip(motions, rows, strict=True)]
             yield Conflict(cause, moves, names, None, (times[0], times[1]), (rows[0], rows[1]), why)
 
     def skipped(self, items: IntArray) -> NDArray[np.bool_]:
@@ -427,15 +425,11 @@ class _Search:
         one, other = self._prover.one, self._prover.other
         i, j, row = (int(k) for k in item)
         moves = int(one.moves[i]), int(other.moves[j])
-        times = _middle(one.own_time[i]), _middle(other.own_time[j])
+        times = _span(one.own_time[i]), _span(other.own_time[j])
         known = distance if math.isfinite(distance) else None
         conflict = Conflict(cause, moves, self._prover.names(row), known, times, (i, j))
         self._verdict.conflicts.setdefault(moves, conflict)
 
 
-def _middle(span: FloatArray) -> float:
-    """The middle of a span of time; its end that is known, where the other is without end."""
-    low, high = (float(t) for t in span)
-    if math.isinf(low):
-        return 0.0 if math.isinf(high) else high
-    return low if math.isinf(high) else 0.5 * (low + high)
+def _span(times: FloatArray) -> tuple[float, float]:
+    return float(times[0]), float(times[1])

@@ -314,7 +314,7 @@ class StationFeasibility:
             conflict_said(state.station, pair, conflict),
             conflict.moves[side],
             (begin, end),
-            conflict.times[side],
+            conflict.time(side),
             conflict.pair,
             conflict.distance,
         )

@@ -267,6 +267,23 @@ def test_an_interlock_is_proven_or_the_pair_of_moves_is_named(write: Write) -> N
     assert not pair.safe and not made.clear
 
 
+def test_who_is_met_while_it_waits_is_met_at_one_time(write: Write) -> None:
+    """One stands in the middle and waits; two comes there, and is not said to be late."""
+    away, near = (
+        f"MoveAbsJ [[{angle},0,0,0,30,0],{UNUSED}], v1000, fine, tool0" for angle in (90, 0)
+    )
+    programs = {
+        "one": [away, near, "WaitDI diGo,1", away],
+        "two": [away, "WaitTime 3", near, away, "SetDO doGo,1"],
+    }
+    file = write(programs, '[links]\n"two.doGo" = "one.diGo"\n', gap=650.0)
+    made = station(file, no_proof=False)
+    (pair,) = made.clearances
+    (conflict,) = pair.in_time.conflicts.values()
+    said = made.conflict_said(pair, conflict)
+    assert said.endswith(" s of the station)") and "(at 3." in said
+
+
 def test_robots_are_50_ms_early_or_late_unless_it_is_said() -> None:
     made = flyby.station("examples/two_robots/station.toml")
     assert made.jitter == StationChangeOptions().jitter == pytest.approx(0.05)

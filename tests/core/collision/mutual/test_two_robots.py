@@ -149,10 +149,10 @@ def test_conflicts_say_where_and_when() -> None:
     (conflict,) = verdict.conflicts.values()
     assert conflict.cause.name == "NEAR" and conflict.distance is not None
     assert conflict.distance < CLEARANCE
-    assert abs(conflict.times[0] - conflict.times[1]) < 0.05
+    assert abs(conflict.time(0) - conflict.time(1)) < 0.05
     q = [
-        at(m.run, np.array([t]))
-        for m, t in zip((prover.one, prover.other), conflict.times, strict=True)
+        at(m.run, np.array([conflict.time(side)]))
+        for side, m in enumerate((prover.one, prover.other))
     ]
     assert prover.nearest(q[0], q[1])[0] < CLEARANCE + 5e-3
 
