@@ -25,7 +25,7 @@ from .orders import Orders, sections_mask
 from .station import RobotStation, StationRobot
 from .turns import turn_by_clocks, turn_by_orders
 
-_SAMPLED = (0.05, 0.002)
+_SAMPLED = (0.01, 0.001)
 """s between the instants at which the least distance is looked for, and round the least."""
 
 

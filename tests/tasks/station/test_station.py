@@ -267,6 +267,21 @@ def test_an_interlock_is_proven_or_the_pair_of_moves_is_named(write: Write) -> N
     assert not pair.safe and not made.clear
 
 
+@pytest.mark.parametrize("wait", [0.5, 0.515, 0.53])
+def test_the_least_distance_is_met_between_steps_of_fast_robots(write: Write, wait: float) -> None:
+    """One stands nearly before two, and later swings past it, where it is nearer for a moment."""
+    turn = "MoveAbsJ [[{},0,0,0,30,0]," + UNUSED + "], v5000, fine, tool0"
+    one = [turn.format(2), f"WaitTime {wait}", turn.format(91), turn.format(-90)]
+    made = station(
+        write({"one": one, "two": [turn.format(0), turn.format(0.1)]}, gap=900.0), no_proof=False
+    )
+    prover = StationProver(made.station, made.actions)
+    t = np.arange(0.0, made.duration, 5e-4)
+    q = [prover.standing(made.run.schedules[name], t)[0] for name in ("one", "two")]
+    dense, at, _ = prover.prover("one", "two").nearest(q[0], q[1])
+    assert t[at] > 0.6 and made.clearances[0].least == pytest.approx(dense, abs=2e-5)
+
+
 def test_who_is_met_while_it_waits_is_met_at_one_time(write: Write) -> None:
     """One stands in the middle and waits; two comes there, and is not said to be late."""
     away, near = (
