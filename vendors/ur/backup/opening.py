@@ -77,8 +77,8 @@ def _backup(source: Path, contents: Contents, types: Types) -> Backup:
 
 
 def _motion(contents: Contents, notes: list[Note]) -> dict[str, tuple[Any, str]]:
-    """What limits of safety say of how fast the arm is driven: the controller slows down where the
-    TCP would be faster."""
+    """What limits of safety say of how fast the arm is driven: the controller is taken to slow down
+    where the TCP would be faster, and not to stop."""
     used = {one.installation for one in contents.programs if one.installation}
     stated = {
         installation.tcp_speed: name
