@@ -23,7 +23,8 @@ class WorldZone:
         ball: centre in the world and radius, m; None for none.
         cylinder: of the world's z axis: centre of one end, radius and height, m, which is below
             zero where the other end is below; None for none.
-        axes: least and greatest value of axes by index, rad or m.
+        axes, linear_axes: least and greatest value of axes by index, rad or m; those that a
+            station file gives in mm by themselves.
     """
 
     name: str
@@ -34,6 +35,7 @@ class WorldZone:
     ball: tuple[tuple[float, float, float], float] | None = None
     cylinder: tuple[tuple[float, float, float], float, float] | None = None
     axes: tuple[tuple[int, float, float], ...] = ()
+    linear_axes: tuple[tuple[int, float, float], ...] = ()
 
     def depths(self, position: FloatArray, q: FloatArray) -> FloatArray:
         """How far inside the TCP at (T, 3) m in the world, and axes (T, N), are: (T, 1 + N).
@@ -57,7 +59,7 @@ class WorldZone:
             np.minimum(place, radius - off, out=place)
             up = position[:, 2] - (foot[2] + min(height, 0.0))
             np.minimum(place, np.minimum(up, abs(height) - up), out=place)
-        for index, least, greatest in self.axes:
+        for index, least, greatest in (*self.axes, *self.linear_axes):
             own = np.minimum(q[:, index] - least, greatest - q[:, index])
             found[:, 1 + index] = np.minimum(found[:, 1 + index], own)
         return found

@@ -251,14 +251,12 @@ def _zone(name: str, table: TomlTable) -> WorldZone:
         raise table.error("signal", "names an output of a robot: left.doInside")
     corners = table.quantities("box", LENGTH, 6) if table.unit_key("box", LENGTH) else None
     ball = table.quantities("ball", LENGTH, 4) if table.unit_key("ball", LENGTH) else None
-    axes = table.value("axes_deg") if table.has("axes_deg") else []
+    axes, linear = _ranges(table, "axes_deg"), _ranges(table, "axes_mm")
     cylinder = (
         table.quantities("cylinder", LENGTH, 5) if table.unit_key("cylinder", LENGTH) else None
     )
-    if corners is None and ball is None and cylinder is None and not axes:
-        raise table.error("", "needs box_mm, ball_mm, cylinder_mm or axes_deg")
-    if not isinstance(axes, list) or not all(map(_is_range, axes)):
-        raise table.error("axes_deg", "holds the number of an axis with its range: [[1, -30, 30]]")
+    if corners is None and ball is None and cylinder is None and not (axes or linear):
+        raise table.error("", "needs box_mm, ball_mm, cylinder_mm, axes_deg or axes_mm")
     if corners is not None and any(corners[k] == corners[k + 3] for k in range(3)):
         raise table.error("box_mm", "is two corners with space between: [x, y, z, x, y, z]")
     if ball is not None and ball[3] <= 0.0:
@@ -278,7 +276,8 @@ def _zone(name: str, table: TomlTable) -> WorldZone:
         None if corners is None else (_point(corners[:3]), _point(corners[3:])),
         None if ball is None else (_point(ball[:3]), ball[3]),
         None if cylinder is None else (_point(cylinder[:3]), cylinder[3], cylinder[4]),
-        tuple((int(k) - 1, math.radians(low), math.radians(high)) for k, low, high in axes),
+        tuple((k, math.radians(low), math.radians(high)) for k, low, high in axes),
+        tuple((k, 1e-3 * low, 1e-3 * high) for k, low, high in linear),
     )
 
 
@@ -305,6 +304,14 @@ def _held_together(table: TomlTable, robots: Mapping[str, str]) -> HeldTogether:
     other = table.choice("by", [name for name in robots.values() if name != holder])
     table.finish()
     return HeldTogether(holder, part.strip(), other)
+
+
+def _ranges(table: TomlTable, key: str) -> list[tuple[int, float, float]]:
+    """Axes by index with the range of each, in the file's unit."""
+    given = table.value(key) if table.has(key) else []
+    if not isinstance(given, list) or not all(map(_is_range, given)):
+        raise table.error(key, "holds the number of an axis with its range: [[1, -30, 30]]")
+    return [(int(number) - 1, low, high) for number, low, high in given]
 
 
 def _is_range(given: object) -> bool:

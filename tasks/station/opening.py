@@ -283,15 +283,27 @@ def _zoned(file: StationFile, robot: str) -> set[str]:
 
 
 def _check_axes(file: StationFile, member: StationRobot) -> None:
-    """Zones watch axes that there are."""
-    size = member.cell.robot.size
+    """Zones watch axes that there are, in the units of these."""
+    from ...core.robot.joint import JointKind
+
+    robot = member.cell.robot
+    joints = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
     for zone in file.zones:
-        beyond = [index + 1 for index, _, _ in zone.axes if index >= size]
-        if zone.robot == member.name and beyond:
-            raise InputError(
-                f"{file.file}: zone.{zone.name}: axes_deg: {member.name} has axes 1 to {size}, no "
-                f"axis {beyond[0]}"
-            )
+        if zone.robot != member.name:
+            continue
+        given = (("axes_deg", zone.axes), ("axes_mm", zone.linear_axes))
+        for key, index in ((key, index) for key, ranges in given for index, _, _ in ranges):
+            where = f"{file.file}: zone.{zone.name}: {key}"
+            if index >= len(joints):
+                raise InputError(
+                    f"{where}: {member.name} has axes 1 to {len(joints)}, no axis {index + 1}"
+                )
+            own = "axes_mm" if joints[index].kind is JointKind.PRISMATIC else "axes_deg"
+            if key != own:
+                raise InputError(
+                    f"{where}: the range of {member.name}'s axis {index + 1}, "
+                    f"{joints[index].name}, is given as {own}"
+                )
 
 
 def _alone(actions: dict[str, tuple[Action, ...]]) -> Iterator[Note]:

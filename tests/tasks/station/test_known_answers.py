@@ -174,6 +174,31 @@ def test_a_rail_carries_an_arm_past_another(write: Write, stands: float, clear: 
         assert conflict.moves[0] == 1
 
 
+def test_a_rail_is_watched_in_mm(write: Write) -> None:
+    """It is where the output is set at the programmed speed, and no angle."""
+    by = "MoveAbsJ [[0,0,0,0,30,0],[{},9E9,9E9,9E9,9E9,9E9]], v1000, fine, tool0"
+    zone = '[zone.z]\nsignal = "one.doFar"\n'
+    programs = {"one": [by.format(0), by.format(1000), by.format(0)], "two": [IN, IN]}
+
+    def opened(ranges: str) -> flyby.DrivenStation:
+        file = write(programs, zone + ranges, gap=3000.0)
+        cell = file.parent / "one.toml"
+        cell.write_text(cell.read_text() + RAIL)
+        return flyby.station(file, no_proof=True)
+
+    made = opened("axes_mm = [[7, 400, 3000]]\n")
+    times = [action.time for action in made.actions["one"]]
+    run = made.station.members["one"].run
+    places = [np.interp(time, run.trajectory.t, run.trajectory.q[:, 6]) for time in times]
+    assert places == pytest.approx([0.4, 0.4], abs=2e-3)
+    for ranges, said in (
+        ("axes_deg = [[7, 400, 3000]]\n", "axis 7, rail, is given as axes_mm"),
+        ("axes_mm = [[1, 0, 30]]\n", "axis 1, J1, is given as axes_deg"),
+    ):
+        with pytest.raises(InputError, match=said):
+            opened(ranges)
+
+
 def test_two_arms_hold_one_part(tmp_path: Path) -> None:
     """A bar, held by the one, lies in the other's gripper; both move it along, one programmed at
     half the speed."""
