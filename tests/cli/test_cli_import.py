@@ -112,10 +112,10 @@ def test_commands_take_a_backup(flyby: Flyby, station: Path, command: str) -> No
     assert "error" not in result.output
 
 
-def test_a_folder_that_is_no_backup_asks_for_the_robot(flyby: Flyby, tmp_path: Path) -> None:
+def test_a_folder_without_programs_is_no_backup(flyby: Flyby, tmp_path: Path) -> None:
     result = flyby("emulate", tmp_path)
-    assert result.exit_code == 2
-    assert "which robot?" in result.output
+    assert result.exit_code == 1
+    assert "no backup is in this folder" in result.output
 
 
 def test_a_backup_says_which_robot_a_translated_program_is_for(

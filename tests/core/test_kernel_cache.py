@@ -181,8 +181,8 @@ def test_it_is_installed_however_the_package_is_imported(first: str) -> None:
     code = (
         f"{first}\nimport sys\n"
         "import flyby\n"
-        "from flyby.core.robot.kinematics import orientations\n"
-        "found = [v for v in vars(orientations).values() if hasattr(v, '_cache')]\n"
+        "from flyby.core.robot.kinematics import chain_kernels\n"
+        "found = [v for v in vars(chain_kernels).values() if hasattr(v, '_cache')]\n"
         "print({type(v._cache).__name__ for v in found})\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -101,6 +101,7 @@ OTHER = MotionModel(
     mixed_space=Space.TCP,
     stops_at_pure_reorientation=True,
     pace=Pace.SUPERPOSED,
+    tcp_speed=1.75,
     tcp_acceleration=3.5,
     reorientation_acceleration=2.5,
     line_turn=LineTurn.SWIVEL,
