@@ -18,11 +18,7 @@ def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
     One that the program has set by then is what it is set to.
     """
     placed = {name.casefold() for name in program.placed}
-    asked = {
-        question.key.casefold(): question.key
-        for question in program.questions
-        if question.kind is QuestionKind.DATUM and not question.answered
-    }
+    asked = _asked(program)
     if not asked:
         return {}
     found: dict[int, tuple[str, ...]] = {}
@@ -38,11 +34,13 @@ def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
 
 def refuse_assumed(program: Program) -> None:
     """Refuse a program that something is proven of, or written from, if a tool or work object of
-    it is not known: it would hold for what that is taken for.
+    it, or an argument of the routine that it begins with, is not known: it would hold for what that
+    is taken for.
 
     Raises:
         InputError: it names them, and the first move that uses one.
     """
+    _refuse_open(program)
     assumed = assumed_places(program)
     if not assumed:
         return
@@ -53,6 +51,28 @@ def refuse_assumed(program: Program) -> None:
         f"{where}: {' and '.join(names)} {be} not known: nothing can be proven or written with "
         f"what {it} taken for; say what {it} in a file ({spelt('answers')}; `flyby ask` writes one)"
     )
+
+
+def _refuse_open(program: Program) -> None:
+    asked = _asked(program)
+    names = [name for name in program.open_arguments if name.casefold() in asked]
+    if names:
+        them = "argument " if len(names) == 1 else "arguments "
+        raise InputError(
+            f"{program.name}: nobody gives the {them}{' and '.join(names)} of the routine that it "
+            "begins with: what is proven or written would hold for one call of it alone; give them "
+            f"with the routine ({spelt('entry')}), or in a file ({spelt('answers')}; `flyby ask` "
+            "writes one), or begin with a routine that calls it"
+        )
+
+
+def _asked(program: Program) -> dict[str, str]:
+    """Data that nobody says, as they are written, by their names without case."""
+    return {
+        question.key.casefold(): question.key
+        for question in program.questions
+        if question.kind is QuestionKind.DATUM and not question.answered
+    }
 
 
 def _at_default(move: Move, placed: Collection[str]) -> list[str]:

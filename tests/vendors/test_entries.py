@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flyby.core.errors import EntryError, SourceError
+from flyby.core.errors import EntryError, InputError, SourceError
+from flyby.core.program.assumed_places import refuse_assumed
 from flyby.core.program.entry_point import others_drive
 from flyby.core.program.program import Program
 from flyby.core.program.question import Answer
@@ -138,6 +139,19 @@ def test_arguments_that_nobody_gives_are_asked_where_programs_go_on(vendor: str)
     if vendor != "kuka":
         with pytest.raises(SourceError, match="argument"):
             read(vendor, "Pick")
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+def test_nothing_is_proven_or_written_of_one_call_alone(vendor: str) -> None:
+    """What numbers are taken for where nobody gives them holds for no other call."""
+    with pytest.raises(
+        InputError, match="nobody gives the argument.* of the routine that it begins"
+    ):
+        refuse_assumed(read(vendor, "Pick", Answers(goes_on=True)))
+    told = Answers(goes_on=True, values={"n": 1.0, "p": ANSWERS[vendor]})
+    refuse_assumed(read(vendor, "Pick", told))
+    refuse_assumed(read(vendor, f"Pick(1, {TARGETS[vendor]})", Answers(goes_on=True)))
+    refuse_assumed(read(vendor, "Home", Answers(goes_on=True)))
 
 
 @pytest.mark.parametrize("vendor", TEXTS)
