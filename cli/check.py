@@ -87,7 +87,7 @@ def _findings(
     named = source.robot is not None or source.cell is not None
     robot = setup_of(source).robot.name if named else None
     try:
-        read = read_for_robot(program, source)
+        read = read_for_robot(program, source, told=False)
     except OptionError:
         raise
     except FlybyError as error:

@@ -300,3 +300,35 @@ def test_a_waypoint_that_is_left_out_does_not_return(
     assert times["after"] <= times["before"]
     if command == "zones":
         assert any("leaves the waypoint of move 4 out" in n["message"] for n in told["notes"])
+
+
+@pytest.mark.parametrize("command", ["zones", "optimize"])
+def test_what_a_target_is_taken_for_is_said(flyby: Flyby, tmp_path: Path, command: str) -> None:
+    """What is proven holds for the number that nobody gave alone."""
+    at = "[[{},400],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+    points = [
+        f"CONST robtarget p{k}:={at.format(xy)};" for k, xy in enumerate(("400,0", "400,200"))
+    ]
+    file = tmp_path / "a.mod"
+    file.write_text(
+        "\n".join(
+            (
+                "MODULE a",
+                "VAR iodev dev;",
+                *points,
+                "PROC main()",
+                "VAR num h;",
+                "h:=ReadNum(dev);",
+                "MoveJ p0,v500,fine,tool0;",
+                "MoveL Offs(p1,0,0,h),v500,fine,tool0;",
+                "ENDPROC",
+                "ENDMODULE",
+            )
+        )
+    )
+    result = flyby(command, file, "--robot", "abb/irb120-3-058", "--no-floor")
+    assert "ReadNum(dev)" in result.stderr and "as it is taken to run; --io says" in result.stderr
+    answers = tmp_path / "answers.toml"
+    answers.write_text('[values]\n"ReadNum(dev)" = 10\n')
+    result = flyby(command, file, "--robot", "abb/irb120-3-058", "--no-floor", "--io", answers)
+    assert "not known" not in result.stderr
