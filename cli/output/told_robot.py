@@ -37,8 +37,9 @@ def _tell_unknown(program: Program) -> None:
     from ...core.source.execution.answers_text import grouped
 
     # What takes time alone changes nothing of where the robot goes.
-    for line in grouped([one for one in program.questions if one.kind is not QuestionKind.PAUSE]):
+    asked = grouped([one for one in program.questions if one.kind is not QuestionKind.PAUSE])
+    if asked:
         warn(
-            f"not known: {line}: what is said here, and proven, is of the program as it is taken "
-            "to run; --io says it otherwise (`flyby ask` writes a file for it)"
+            f"not known: {'; '.join(asked)}: what is said here, and proven, is of the program as "
+            "it is taken to run; --io says it otherwise (`flyby ask` writes a file for it)"
         )

@@ -33,37 +33,29 @@ def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
 
 
 def refuse_assumed(program: Program) -> None:
-    """Refuse a program that something is proven of, or written from, if a tool or work object of
-    it, or an argument of the routine that it begins with, is not known: it would hold for what that
-    is taken for.
+    """Refuse a program that something is proven of, or written from, if a place of it, a tool or a
+    work object is not known: it would hold for what that is taken for.
 
     Raises:
-        InputError: it names them, and the first move that uses one.
+        InputError: it names what is not known, and the first move that uses it.
     """
-    _refuse_open(program)
     assumed = assumed_places(program)
-    if not assumed:
-        return
-    names = [*dict.fromkeys(name for names in assumed.values() for name in names)]
-    where = program.moves[min(assumed)].statement
-    be, it = ("is", "it is") if len(names) == 1 else ("are", "they are")
-    raise InputError(
-        f"{where}: {' and '.join(names)} {be} not known: nothing can be proven or written with "
-        f"what {it} taken for; say what {it} in a file ({spelt('answers')}; `flyby ask` writes one)"
-    )
-
-
-def _refuse_open(program: Program) -> None:
-    asked = _asked(program)
-    names = [name for name in program.open_arguments if name.casefold() in asked]
-    if names:
-        them = "argument " if len(names) == 1 else "arguments "
+    if assumed:
+        names = [*dict.fromkeys(name for names in assumed.values() for name in names)]
+        where = program.moves[min(assumed)].statement
+        be, it = ("is", "it is") if len(names) == 1 else ("are", "they are")
         raise InputError(
-            f"{program.name}: nobody gives the {them}{' and '.join(names)} of the routine that it "
-            "begins with: what is proven or written would hold for one call of it alone; give them "
-            f"with the routine ({spelt('entry')}), or in a file ({spelt('answers')}; `flyby ask` "
-            "writes one), or begin with a routine that calls it"
+            f"{where}: {' and '.join(names)} {be} not known: nothing can be proven or written with "
+            f"what {it} taken for; say what {it} in a file ({spelt('answers')}; `flyby ask` writes "
+            "one)"
         )
+    for move in program.moves:
+        if move.supposed:
+            raise InputError(
+                f"{move.statement}: {move.supposed}, which nobody says: nothing can be proven or "
+                f"written with what is taken for it; say it in a file ({spelt('answers')}; "
+                "`flyby ask` writes one)"
+            )
 
 
 def _asked(program: Program) -> dict[str, str]:

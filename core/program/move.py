@@ -34,6 +34,8 @@ class _Motion:
             stops it at: no move at all, and the last of the program.
         unsettled: why nobody knows how it is driven, though its target is known; empty if that is
             known. It cannot be driven either, but the robot stands at its target afterwards.
+        supposed: why nobody knows where it goes, or how near it passes, though it is driven by
+            what is taken for that; empty if it is known; not part of the value.
         origin: where in the source the numbers stand; not part of the value.
     """
 
@@ -47,6 +49,7 @@ class _Motion:
     open: str = field(default="", kw_only=True)
     stops: bool = field(default=False, kw_only=True)
     unsettled: str = field(default="", kw_only=True)
+    supposed: str = field(default="", compare=False, kw_only=True)
     origin: MoveOrigin | None = field(default=None, compare=False, kw_only=True)
 
     def __repr__(self) -> str:

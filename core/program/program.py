@@ -74,7 +74,6 @@ class Program:
             of the value.
         placed: names of tools and work objects that nobody knows, and that were put to where the
             robot drives the program.
-        open_arguments: of the routine that it begins with, those that nobody gives.
     """
 
     statements: tuple[Statement, ...]
@@ -89,7 +88,6 @@ class Program:
     reading: ReadFrom | None = field(default=None, compare=False, repr=False)
     setup: DrivenBy | None = field(default=None, compare=False, repr=False)
     placed: tuple[str, ...] = field(default=(), repr=False)
-    open_arguments: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
     def __repr__(self) -> str:
         robot = "" if self.setup is None else f" for {self.setup.robot.name}"

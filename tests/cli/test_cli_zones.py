@@ -303,8 +303,10 @@ def test_a_waypoint_that_is_left_out_does_not_return(
 
 
 @pytest.mark.parametrize("command", ["zones", "optimize"])
-def test_what_a_target_is_taken_for_is_said(flyby: Flyby, tmp_path: Path, command: str) -> None:
-    """What is proven holds for the number that nobody gave alone."""
+def test_what_a_target_is_taken_for_is_not_proven(
+    flyby: Flyby, tmp_path: Path, command: str
+) -> None:
+    """It would hold for the number that nobody gave alone; what else is not known is said."""
     at = "[[{},400],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
     points = [
         f"CONST robtarget p{k}:={at.format(xy)};" for k, xy in enumerate(("400,0", "400,200"))
@@ -318,17 +320,21 @@ def test_what_a_target_is_taken_for_is_said(flyby: Flyby, tmp_path: Path, comman
                 *points,
                 "PROC main()",
                 "VAR num h;",
+                "IF di1=1 WaitTime 1;",
                 "h:=ReadNum(dev);",
                 "MoveJ p0,v500,fine,tool0;",
-                "MoveL Offs(p1,0,0,h),v500,fine,tool0;",
+                "MoveL Offs(p1,0,0,h),v500,z10,tool0;",
+                "MoveL p0,v500,fine,tool0;",
                 "ENDPROC",
                 "ENDMODULE",
             )
         )
     )
     result = flyby(command, file, "--robot", "abb/irb120-3-058", "--no-floor")
-    assert "ReadNum(dev)" in result.stderr and "as it is taken to run; --io says" in result.stderr
+    assert result.exit_code != 0
+    assert "as it is taken to run; --io says" in result.stderr
+    assert "a.mod:10:1: the target of MoveL depends on the value of ReadNum(dev)" in result.stderr
     answers = tmp_path / "answers.toml"
     answers.write_text('[values]\n"ReadNum(dev)" = 10\n')
     result = flyby(command, file, "--robot", "abb/irb120-3-058", "--no-floor", "--io", answers)
-    assert "not known" not in result.stderr
+    assert result.exit_code == 0 and "nothing can be proven" not in result.stderr

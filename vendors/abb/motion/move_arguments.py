@@ -90,6 +90,7 @@ class MoveArguments:
         self.bound = bound
         self.record: Record = ()
         self.unsettled = ""
+        self.supposed = ""
         for option, why in _LEFT_OUT.items():
             if option in bound.options:
                 run.out.notes.count(f"\\{option.upper()}: {why}", bound.option_spans[option])
@@ -104,7 +105,7 @@ class MoveArguments:
         Raises:
             NotDriven: nobody knows where it is.
         """
-        self._refuse_lost("displacement", "offsets")
+        self._refuse_not_known("displacement", "offsets")
         expression = self.bound.named(name)
         found = self._found(expression, "target", ROBTARGET)
         target = self.run.convert.pose_target(
@@ -138,17 +139,24 @@ class MoveArguments:
         offsets = "useeoffs" in self.bound.options or (
             not arm_stays and "noeoffs" not in self.bound.options
         )
-        self._refuse_lost(*(("offsets",) if offsets else ()))
+        self._refuse_not_known(*(("offsets",) if offsets else ()))
         value = self._with_arm(found.value) if arm_stays else found.value
         target = self.run.convert.joint_target(value, name, offsets, expression.span)
         self.record = _record(value)
         moved = arm_stays or (offsets and self.run.settings.now.offsets is not None)
         return target, _part_of(expression.span, None if moved else found.source)
 
-    def _refuse_lost(self, *settings: str) -> None:
+    def _refuse_not_known(self, *settings: str) -> None:
+        use = f"the target of {self.bound.text}"
         lost = self.run.settings.lost_of(settings)
         if lost:
-            raise NotDriven(f"the target of {self.bound.text} depends on {lost}")
+            raise NotDriven(f"{use} depends on {lost}")
+        self._suppose(use, self.run.settings.supposed_of(settings))
+
+    def _suppose(self, use: str, reason: str) -> None:
+        """What the path of the move depends on is taken for something."""
+        if reason:
+            self.supposed = self.supposed or f"{use} depends on {reason}"
 
     def _with_arm(self, value: Value) -> Value:
         """A jointtarget with the arm's present joint values."""
@@ -208,6 +216,8 @@ class MoveArguments:
                 raise NotDriven(f"{use} depends on {unknown.reason}{answerable(unknown)}")
             value = evaluator.assumed(found.value, type_, use, expression.span)
             found = replace(found, value=value, cell=None)
+            if type_ is not SPEEDDATA:
+                self._suppose(use, unknown.reason)
         if type_ is ROBTARGET and found.source is None and points_nowhere(found.value):
             answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
             if answer is not None:
@@ -272,6 +282,8 @@ class MoveArguments:
                 expression.span,
                 f"{use} depends on {unknown.reason}: it is left out{answerable(unknown)}",
             )
+            if name == "z":
+                self._suppose(use, unknown.reason)
             return None
         evaluator.check(value, NUM, use, expression.span)
         assert isinstance(value, float)

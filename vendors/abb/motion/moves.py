@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ....core.errors import SourceError
 from ....core.program.arc_orientation import ArcOrientation
@@ -108,12 +108,12 @@ def read_move(
     unsettled = f"how {bound.text} is driven depends on {lost}" if lost else reader.unsettled
     if arc is not None:
         assert via is not None and isinstance(target, PoseTarget)
-        move: Move = MoveC(
-            target, *common, events=events, unsettled=unsettled, via=via, orientation=arc
-        )
+        move: Move = MoveC(target, *common, events=events, via=via, orientation=arc)
     else:
         kind = MoveL if form.kind == "linear" else MoveJ
-        move = kind(target, *common, events=events, unsettled=unsettled)
+        move = kind(target, *common, events=events)
+    if unsettled or reader.supposed:
+        move = replace(move, unsettled=unsettled, supposed=reader.supposed)
     return move, parts, reader.record
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -64,10 +64,12 @@ class SettingsInForce:
     Attributes:
         now: values of them.
         lost: by the name of a setting, why nobody knows what it is: who set it last is damaged.
+        supposed: likewise, of one that something is taken for: the program does not say all of it.
     """
 
     now: Settings = Settings()
     lost: dict[str, str] = field(default_factory=dict)
+    supposed: dict[str, str] = field(default_factory=dict)
 
     def change(self, **settings: object) -> None:
         """Settings that are known from here on."""
@@ -75,6 +77,17 @@ class SettingsInForce:
         self.now = replace(self.now, **values)
         for name in settings:
             self.lost.pop(name, None)
+            self.supposed.pop(name, None)
+
+    def suppose(self, name: str, value: object, reason: str) -> None:
+        """A setting of which something is taken for what the program does not say.
+
+        Args:
+            reason: what it depends on; empty if all of it is known.
+        """
+        self.change(**{name: value})
+        if reason:
+            self.supposed[name] = reason
 
     def lose(self, names: Iterable[str], why: str) -> None:
         """From here on nobody knows what these settings are, until they are set again."""
@@ -82,4 +95,12 @@ class SettingsInForce:
 
     def lost_of(self, names: Iterable[str]) -> str:
         """Why one of these settings is not known; empty if all are."""
-        return next((self.lost[name] for name in names if name in self.lost), "")
+        return _first(self.lost, names)
+
+    def supposed_of(self, names: Iterable[str]) -> str:
+        """What one of these settings depends on that the program does not say; empty if nothing."""
+        return _first(self.supposed, names)
+
+
+def _first(reasons: Mapping[str, str], names: Iterable[str]) -> str:
+    return next((reasons[name] for name in names if name in reasons), "")

@@ -18,7 +18,17 @@ from ..values.arguments import Bound, bind
 from ..values.evaluator import Evaluator
 from ..values.records import UNUSED_AXIS, VMAX
 from ..values.scope import Scope
-from ..values.types import BOOL, EXTJOINT, NUM, POSE, ROBTARGET, answerable, find_unknown
+from ..values.types import (
+    BOOL,
+    EXTJOINT,
+    NUM,
+    POSE,
+    ROBTARGET,
+    Type,
+    Value,
+    answerable,
+    find_unknown,
+)
 from .kinematics import RobotFunctions
 from .settings import SettingsInForce
 from .targets import Converter
@@ -172,8 +182,8 @@ def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
 
 def _pdisp_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("DispFrame",), ())
-    frame = run.evaluator.known(bound.value(0), scope, POSE, "PDispSet")
-    run.settings.change(displacement=run.convert.pose(frame, bound.span))
+    frame, open_ = _taken(run, bound.value(0), scope, POSE, "PDispSet")
+    run.settings.suppose("displacement", run.convert.pose(frame, bound.span), open_)
 
 
 def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -183,9 +193,10 @@ def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     unless it is given; without ``\Rot`` by a shift alone.
     """
     bound = bind(invoke, ("ProgPoint", "Tool"), ("rot", "exep", "wobj"))
-    programmed = _point(run, bound.value(0), scope)
+    programmed, open_ = _point(run, bound.value(0), scope)
     if "exep" in bound.options:
-        executed = _point(run, bound.option("exep"), scope)
+        executed, other = _point(run, bound.option("exep"), scope)
+        open_ = open_ or other
     else:
         record = run.functions.present_robtarget(
             run.evaluator, bound.value(1), bound.options.get("wobj"), scope, invoke
@@ -195,34 +206,46 @@ def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     displacement = Pose((shift[0], shift[1], shift[2]))
     if "rot" in bound.options:
         displacement = executed @ programmed.inverse()
-    run.settings.change(displacement=displacement)
+    run.settings.suppose("displacement", displacement, open_)
 
 
-def _point(run: SettingsRun, expression: Expression, scope: Scope) -> Pose:
-    value = run.evaluator.known(expression, scope, ROBTARGET, "PDispOn")
+def _point(run: SettingsRun, expression: Expression, scope: Scope) -> tuple[Pose, str]:
+    value, open_ = _taken(run, expression, scope, ROBTARGET, "PDispOn")
     assert isinstance(value, tuple)
-    return run.convert.pose(value[:2], expression.span)
+    return run.convert.pose(value[:2], expression.span), open_
+
+
+def _taken(
+    run: SettingsRun, expression: Expression, scope: Scope, type_: Type, use: str
+) -> tuple[Value, str]:
+    """A value, or what is taken for it, and what it depends on that the program does not say."""
+    value = run.evaluator.evaluate(expression, scope)
+    unknown = find_unknown(value)
+    taken = run.evaluator.assumed(value, type_, use, expression.span)
+    run.evaluator.check(taken, type_, use, expression.span)
+    return taken, "" if unknown is None else unknown.reason
 
 
 def _eoffs_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("EAxOffs",), ())
-    offsets = run.evaluator.known(bound.value(0), scope, EXTJOINT, "EOffsSet")
+    offsets, open_ = _taken(run, bound.value(0), scope, EXTJOINT, "EOffsSet")
     assert isinstance(offsets, tuple)
-    run.settings.change(offsets=offsets)
+    run.settings.suppose("offsets", offsets, open_)
 
 
 def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     r"""``EOffsOn [\ExeP,] ProgPoint``: the difference of external axes between the two points."""
     bound = bind(invoke, ("ProgPoint",), ("exep",))
-    programmed = run.evaluator.known(bound.value(0), scope, ROBTARGET, "EOffsOn")
+    programmed, open_ = _taken(run, bound.value(0), scope, ROBTARGET, "EOffsOn")
     if "exep" in bound.options:
-        executed = run.evaluator.known(bound.option("exep"), scope, ROBTARGET, "EOffsOn")
+        executed, other = _taken(run, bound.option("exep"), scope, ROBTARGET, "EOffsOn")
+        open_ = open_ or other
     else:
         executed = run.functions.present_robtarget(run.evaluator, None, None, scope, invoke)
     assert isinstance(programmed, tuple) and isinstance(executed, tuple)
     pairs = zip(executed[3], programmed[3], strict=True)
     offsets = tuple(e - p if max(abs(e), abs(p)) < UNUSED_AXIS else 0.0 for e, p in pairs)
-    run.settings.change(offsets=offsets)
+    run.settings.suppose("offsets", offsets, open_)
 
 
 def _world_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:

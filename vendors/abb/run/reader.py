@@ -41,7 +41,6 @@ from ..syntax.parser import parse
 from ..syntax.tree import Argument, Module
 from ..values.data import Globals
 from ..values.library import Library
-from .calls import needed_by
 from .entry import choose_entry, entry_arguments, entry_points
 from .files import MODULES, PROGRAM, beside, collect, loaded
 from .interpreter import Interpreter
@@ -165,5 +164,4 @@ def _program(
         calls=tuple(run.out.calls),
         cycle=run.course.cycle,
         sections=run.course.sections.found(run.course.cycle),
-        open_arguments=() if given is not None else tuple(p.name for p in needed_by(entry)),
     )

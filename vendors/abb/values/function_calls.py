@@ -125,12 +125,8 @@ def _value(
                 OF_THE_ARM[call.name],
             )
         if call.name in STATE:
-            return Unknown(
-                f"the value of {call.text}()",
-                call.span,
-                evaluator.answers.key(call.span),
-                default_of(STATE[call.name]),
-            )
+            key = evaluator.answers.key(call.span)
+            return Unknown(f"the value of {key}", call.span, key, default_of(STATE[call.name]))
         own = data.fetched_routine(call.name, scope.home, call.span)
     if own is None:
         return _missing(evaluator, call)

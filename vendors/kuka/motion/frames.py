@@ -54,6 +54,7 @@ class Placements:
         self._course = course
         self._note = note
         self._made: Placement | None = None
+        self._supposed = ""
 
     def changed(self) -> None:
         """A system variable has another value now."""
@@ -77,7 +78,8 @@ class Placements:
             SourceError: a frame is not known.
         """
         if self._made is None:
-            self._made = self._placement(span)
+            self._supposed = ""
+            self._made = replace(self._placement(span), supposed=self._supposed)
         return self._made
 
     def _placement(self, span: Span) -> Placement:
@@ -104,6 +106,7 @@ class Placements:
             assert value is not None and not isinstance(value, Pending)
             if unknown.damaged:
                 raise left_open(name.upper(), unknown, span)
+            self._supposed = self._supposed or f"{name.upper()} depends on {unknown.reason}"
             value = supposed(value)
             taken = isinstance(value, Struct) and find_unknown(value) is None
             self._note(

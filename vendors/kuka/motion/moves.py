@@ -55,11 +55,13 @@ class Manner(NamedTuple):
     Args:
         sources: what its speed and its zone are made of.
         unsettled: why nobody knows it; empty if that is known.
+        supposed: what its zone depends on that the text does not say.
     """
 
     common: Common
     sources: tuple[Sources, Sources]
     unsettled: str
+    supposed: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +153,7 @@ class MotionReader:
         kind = MoveJ if joint else MoveL
         events = self.triggers.taken()
         move: Move = kind(found.target, *how.common, events=events, unsettled=how.unsettled)
-        self._emit(motion, move, found, how.sources)
+        self._emit(motion, _supposed(move, found, placement, how), found, how.sources)
 
     # --------------------------------------------------------------------- one kind each
 
@@ -227,7 +229,8 @@ class MotionReader:
                 events=events,
                 unsettled=how.unsettled,
             )
-            self._emit(motion, move, found, how.sources, via_part)
+            made = _supposed(move, auxiliary, found, placement, how)
+            self._emit(motion, made, found, how.sources, via_part)
             events = ()
 
     def _by_angle(
@@ -305,7 +308,8 @@ class MotionReader:
             zone, lost = Set(FINE, Sources(())), lost or error.message
         assert isinstance(speed.value, Speed) and not isinstance(zone.value, Speed)
         at = placement.tool, placement.work_object, placement.load
-        return Manner((speed.value, zone.value, *at), (speed.sources, zone.sources), lost)
+        sources = speed.sources, zone.sources
+        return Manner((speed.value, zone.value, *at), sources, lost, zone.supposed)
 
     def _part(self, span: Span, sources: Sources, predefined: str | None = None) -> MovePart:
         reads, index = self.evaluator.reads, self.transcript.move_index
@@ -335,6 +339,12 @@ class MotionReader:
         self.meter.move(motion.span)
         self.transcript.emit_move(move, parts)
         self.position.moved(move, motion.span, found.complete)
+
+
+def _supposed(move: Move, *parts: ReadTarget | Placement | Manner) -> Move:
+    """A move that says what its path depends on that the text does not say."""
+    reason = next((part.supposed for part in parts if part.supposed), "")
+    return replace(move, supposed=reason) if reason else move
 
 
 def _known_start(start: Struct | Unknown | None, what: str, span: Span) -> Struct:

@@ -46,10 +46,15 @@ _KINDS = {"c_dis": "cdis", "c_spl": "cdis", "c_ori": "cori", "c_vel": "cvel", "c
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A speed or a zone with the literals of its numbers."""
+    """A speed or a zone with the literals of its numbers.
+
+    Args:
+        supposed: what a zone depends on that the text does not say.
+    """
 
     value: Speed | Zone
     sources: Sources
+    supposed: str = ""
 
 
 _NOTHING = Sources(())
@@ -69,6 +74,7 @@ class Settings:
         self._defaults = defaults
         self._note = note
         self._cache: dict[object, Set] = {}
+        self._opened = ""
 
     def changed(self) -> None:
         """A system variable has another value now."""
@@ -102,9 +108,10 @@ class Settings:
         """
         if unknown.damaged:
             raise left_open(what, unknown, span)
+        self._opened = f"{what} depends on {unknown.reason}"
         self._note(
             f"{what} {unknown.reason}",
-            f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken",
+            f"{self._opened}, which the text does not say: {taken} is taken",
             span,
         )
 
@@ -302,6 +309,7 @@ class Settings:
         return mode.name if isinstance(mode, Choice) else ""
 
     def _zone(self, kind: str, span: Span) -> Set:
+        self._opened = ""
         value = self._component("$apo", kind, f"DEF_APO_{kind.upper()}", span)
         number = self._number(value, f"$APO.{kind.upper()}", span)
         if number < 0:
@@ -318,7 +326,7 @@ class Settings:
             zone = VendorZone(C_VEL, number / 100)
         else:
             zone = ContourFraction(number / 100)
-        return Set(zone, Sources.each([value]))
+        return Set(zone, Sources.each([value]), self._opened)
 
     def _cached(self, key: object, make: Callable[[], Set]) -> Set:
         if key not in self._cache:

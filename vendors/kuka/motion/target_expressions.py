@@ -75,20 +75,25 @@ class TargetExpressions:
         if key in self._literals:
             return self._literals[key]
         span = expression.span
-        value = self._value(motion, expression, scope)
+        value, open_ = self._value(motion, expression, scope)
         if motion.word.endswith("_rel"):
             return self._relative(motion, value, placement, via, span)
         if is_axes(value):
             found = self.targets.joints(value, span)
         else:
             found = self.targets.pose(value, placement, joint, via, span)
+        if open_:
+            found = replace(found, supposed=open_)
         if found.filled:
             self._depends_on_last()
         elif isinstance(expression, Flat):
             self._literals[key] = found  # loops come by often
         return found
 
-    def _value(self, motion: MotionInstruction, expression: Expression, scope: Scope) -> Struct:
+    def _value(
+        self, motion: MotionInstruction, expression: Expression, scope: Scope
+    ) -> tuple[Struct, str]:
+        """What stands as a target, and what it depends on that the text does not say."""
         span = expression.span
         self.evaluator.reader = self.transcript.move_index
         value = self.evaluator.evaluate(expression, scope)
@@ -106,10 +111,11 @@ class TargetExpressions:
             self.evaluator.check_known(value, what, span)
         if not isinstance(value, Struct):
             raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
+        open_ = "" if unknown is None else f"{what} depends on {unknown.reason}"
         if value.type == "":
-            return self._typed(value, "e6axis" if is_axes(value) else "e6pos", span)
+            return self._typed(value, "e6axis" if is_axes(value) else "e6pos", span), open_
         if value.type in AXES or value.type in POSES:
-            return value
+            return value, open_
         raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
 
     def _supposed(self, value: Value, unknown: Unknown, what: str, span: Span) -> Value:

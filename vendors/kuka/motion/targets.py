@@ -43,6 +43,7 @@ class ReadTarget:
         sources: the literals of its numbers.
         filled: some components are the robot's present ones.
         predefined: the datum of the shipped configuration that it is.
+        supposed: what it depends on that the text does not say; empty if all of it is known.
     """
 
     target: PoseTarget | JointTarget
@@ -50,6 +51,7 @@ class ReadTarget:
     sources: Sources
     filled: bool
     predefined: str | None = None
+    supposed: str = ""
 
 
 class Targets:

@@ -94,7 +94,6 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
             calls=run.calls(),
             cycle=run.course.cycle,
             sections=run.course.sections.found(run.course.cycle),
-            open_arguments=() if given is not None else tuple(p.name for p in entry.parameters),
         )
         run.forget()
         return program

@@ -78,6 +78,7 @@ class Names:
 
     Args:
         position: where the robot is: ``pose`` or ``axes``.
+        guessed: what indices depend on that are taken for what they were last.
         advance: is stopped by reading some system variables.
     """
 
@@ -87,6 +88,7 @@ class Names:
     position: Position
     advance: AdvanceRun
     answers: DatumAnswers = field(init=False)
+    guessed: list[Unknown] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "answers", DatumAnswers(self.course, self.data))
@@ -97,11 +99,19 @@ class Names:
         Raises:
             SourceError: it has no such part.
         """
+        before = len(self.guessed)
         try:
-            return self._value(node, scope)
+            held, unknown = self._value(node, scope), None
         except OpenIndexError as error:
-            reason = f"an item of {node.text}, whose index depends on {error.unknown.reason}"
-            return Unknown(reason, node.span, key=error.unknown.key, damaged=error.unknown.damaged)
+            held, unknown = None, error.unknown
+        if len(self.guessed) > before:
+            unknown = self.guessed[before]
+            del self.guessed[before:]
+        if unknown is None:
+            assert held is not None
+            return held
+        reason = f"an item of {node.text}, whose index depends on {unknown.reason}"
+        return Unknown(reason, node.span, held=held, key=unknown.key, damaged=unknown.damaged)
 
     def _value(self, node: Name, scope: Scope) -> Value:
         position = POSITION.get(node.name)
@@ -349,6 +359,7 @@ class Names:
         if isinstance(value, Unknown) and isinstance(last, int) and possible:
             message = f"an index depends on {value.reason}: {last}, which it was last, is taken"
             self.course.decided(expression.span, message)
+            self.guessed.append(value)
             return int(last)
         if isinstance(value, Unknown):
             raise OpenIndexError(value, expression.span)

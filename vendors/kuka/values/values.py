@@ -156,11 +156,16 @@ class Array:
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """Tool, work object and payload of a move."""
+    """Tool, work object and payload of a move.
+
+    Args:
+        supposed: what tool and work object depend on that the text does not say.
+    """
 
     tool: Tool
     work_object: WorkObject
     load: Load | None
+    supposed: str = ""
 
 
 @dataclass(frozen=True, slots=True)

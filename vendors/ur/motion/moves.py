@@ -137,6 +137,7 @@ class _MoveReader:
         self.given = bind(call, names, len(self.signature.targets), run.texts)
         self.span = run.texts.span_of(call)
         self.unsettled = ""
+        self.supposed = ""
         self.tool = self._tool()
 
     def read(self) -> None:
@@ -166,7 +167,8 @@ class _MoveReader:
             return
         kind = MoveJ if self.call.name in ("movej", "optimovej") else MoveL
         self._note_kind()
-        run.emit_move(kind(last[0], *common, unsettled=self.unsettled), parts)
+        move = kind(last[0], *common, unsettled=self.unsettled, supposed=self.supposed)
+        run.emit_move(move, parts)
 
     def _ask_numbers(self) -> None:
         """How a move is driven of which nobody knows where to is asked at once, too."""
@@ -285,14 +287,19 @@ class _MoveReader:
         self._taken(what, unknown, "what it is with zero for that")
         return taken
 
-    def _taken(self, what: str, unknown: Unknown, taken: str) -> None:
+    def _taken(self, what: str, unknown: Unknown, taken: str, alters: bool = True) -> None:
         """Say what a move takes something for that is not known.
+
+        Args:
+            alters: whether the move's path depends on it.
 
         Raises:
             LeftOpenError: it is something that a damaged line would have set.
         """
         if unknown.damaged:
             raise self._refusal(what, unknown, self.span)
+        if alters:
+            self.supposed = self.supposed or f"{what} depends on {unknown.reason}"
         self.run.out.notes.count(
             f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken; "
             f"answer it in a file ({spelt('answers')}), [values]; `flyby ask` lists its name",
@@ -324,7 +331,7 @@ class _MoveReader:
                 number = float(taken) if is_number(taken) else self.signature.others[name]
                 what = f"'{name}' of {self.call.name}"
                 try:
-                    self._taken(what, unknown, f"{number:g}")
+                    self._taken(what, unknown, f"{number:g}", name not in _SPEED)
                 except LostError as error:
                     self.unsettled = self.unsettled or error.message
                 return number, Located(None)
@@ -380,6 +387,7 @@ class _MoveReader:
             via=middle,
             orientation=orientation,
             unsettled=self.unsettled,
+            supposed=self.supposed,
         )
 
     def _as_pose(self, target: Target) -> PoseTarget:

@@ -83,7 +83,6 @@ def run_program(
         calls=tuple(run.out.calls),
         cycle=run.course.cycle,
         sections=run.course.sections.found(run.course.cycle),
-        open_arguments=run.open_arguments,
     )
 
 
@@ -157,7 +156,7 @@ def _start(run: Interpreter, define: Define) -> None:
     start, end = define.head
     span = run.texts.span(start, end)
     caller = Scope("the caller", outer=run.root)
-    run.open_arguments = needed = _needed_by(define) if run.course.answers.goes_on else ()
+    needed = _needed_by(define) if run.course.answers.goes_on else ()
     for name in needed:
         told = run.course.value(name, About(span, QuestionKind.DATUM))
         unknown = Unknown(f"the argument '{name}' of {define.name}", span, key=name)

@@ -82,7 +82,6 @@ class Interpreter:
         inside: names of the threads that are being carried out.
         jogged: the last motion by `speedj` or `speedl` that was carried out.
         guided: functions by which something else than the program moves the robot, and where.
-        open_arguments: of the function that it begins with, those that nobody gives.
     """
 
     def __init__(self, texts: Texts, tree: ScriptTree, options: ReadOptions) -> None:
@@ -104,7 +103,6 @@ class Interpreter:
         self.threads: list[threads.Started] = []
         self.inside: list[str] = []
         self.guided: list[tuple[str, Span]] = []
-        self.open_arguments: tuple[str, ...] = ()
         self.jogged: Jog | None = None
         self.out = Transcript(texts.text, self.course)
         self.out.streaming = Streaming(options.robot, self.position.moved, self.position.left_out)
