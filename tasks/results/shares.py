@@ -12,7 +12,7 @@ from .report import Report
 
 @dataclass(frozen=True, slots=True)
 class CycleShares:
-    """Of one pass of the loop that production runs in; of the whole program where there is none.
+    """Of one cycle of the loop that production runs in; of the whole program where there is none.
 
     Args:
         motion: s of motion, with what joints take to settle.
@@ -20,6 +20,7 @@ class CycleShares:
         devices: s that devices take, as the answers say.
         passes: that were read of the loop; 0 where there is none.
         line: of the loop; 0 where there is none.
+        length: how many passes of it make the cycle.
     """
 
     motion: float
@@ -27,6 +28,7 @@ class CycleShares:
     devices: float
     passes: int = 0
     line: int = 0
+    length: int = 1
 
     @property
     def total(self) -> float:
@@ -42,8 +44,9 @@ class CycleShares:
         )
         if not self.passes:
             return told
-        which = "" if self.passes == 1 else f", the last of {self.passes}"
-        return f"one pass of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
+        which = "" if self.passes == self.length else f", the last of {self.passes}"
+        what = "one pass" if self.length == 1 else f"{self.length} passes, one cycle"
+        return f"{what} of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
 
 
 def standing(program: Program) -> Iterator[tuple[Wait, int]]:
@@ -61,12 +64,13 @@ def shares(program: Program, report: Report) -> CycleShares:
     cycle = program.cycle
     begin, end = (0, len(report.moves)) if cycle is None else (cycle.begin, cycle.end)
     # What stands behind the last move of a pass stands before the first one of the next, too.
-    last = end - 1 if cycle is not None and cycle.passes > 1 else end
+    last = end - 1 if cycle is not None and cycle.passes > cycle.length else end
     waiting, devices = 0.0, 0.0
     for wait, done in standing(program):
         if begin <= done <= last:
             waiting += 0.0 if wait.device else wait.duration
             devices += wait.duration if wait.device else 0.0
     motion = sum(move.time + move.settling for move in report.moves[begin:end])
-    passes, line = (0, 0) if cycle is None else (cycle.passes, cycle.span.line)
-    return CycleShares(motion, waiting, devices, passes, line)
+    if cycle is None:
+        return CycleShares(motion, waiting, devices)
+    return CycleShares(motion, waiting, devices, cycle.passes, cycle.span.line, cycle.length)

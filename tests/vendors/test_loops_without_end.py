@@ -202,3 +202,10 @@ def test_a_counter_that_steps_unevenly_foresees_nothing(language) -> None:
 def test_a_for_that_counts_too_far_is_cut_short(language) -> None:
     move, cut = program(language, FOR[language].format(MOVE[language])).moves
     assert not move.open and "FOR k has 99899 passes left" in str(cut.open)
+
+
+def test_a_counter_of_krl_that_an_int_does_not_hold_stops_the_program() -> None:
+    """What comes behind the loop is never reached."""
+    move = MOVE["kuka"]
+    found = program("kuka", f"{move}\nFOR k=1 TO 1e38\nn=n+1\nENDFOR\n{move}")
+    assert found.moves[-1].stops and "too large for an INT" in found.moves[-1].open

@@ -225,8 +225,8 @@ CASES = {
         "WHILE go DO\nn:=n+1;\nIF n=1 THEN\n<A>\nELSE\n<B>\nENDIF\nENDWHILE\n<C>",
         "N=0\nGO=TRUE\nWHILE GO\nN=N+1\nIF N==1 THEN\n<A>\nELSE\n<B>\nENDIF\nENDWHILE\n<C>",
         "while go:\nn = n + 1\nif n == 1:\n<A>\nelse:\n<B>\nend\nend\n<C>",
-        "A",
-        ENDLESS,
+        "A B B",
+        ENDLESS.replace("one pass is", "3 passes are"),
     ),
     "LOOP": LOOP,
     "LOOP with a counter that ends nothing": Case(

@@ -212,6 +212,30 @@ class Analysis(Generic[Block]):
 
         return self._once("guards", block, NOTHING, find)
 
+    def choosing(self, block: Block) -> frozenset[str]:
+        """Names of the data that conditions in a block, or in what it calls, read to choose between
+        ways of which one at least moves the robot. Conditions of loops do not count, nor data that
+        the block sets before it reads them."""
+
+        def find() -> frozenset[str]:
+            reached = self._reached(block, _NONE_LEFT_OUT)
+            steps = (s for s in reached if not s.loop and any(map(self.moves, s.inner)))
+            return NOTHING.union(*(step.reads for step in steps)) - self._set_first(block)
+
+        return self._once("choosing", block, NOTHING, find)
+
+    def _set_first(self, block: Block) -> frozenset[str]:
+        """Names of the data that a block sets in any case, before it reads them."""
+        read: set[str] = set()
+        found: set[str] = set()
+        for step in self.steps(block):
+            inside = (self._reached(one, _NONE_LEFT_OUT) for one in (*step.calls, *step.inner))
+            for one in (step, *(one for steps in inside for one in steps)):
+                read |= one.reads | one.made_of
+            if not step.inner and not step.calls:
+                found |= step.writes - read
+        return frozenset(found)
+
     def marks(self, block: Block) -> frozenset[str]:
         """The labels in a block, those in its inner blocks included."""
 

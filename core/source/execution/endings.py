@@ -51,7 +51,8 @@ class Endings(Generic[Block]):
         """Now."""
         host = self._host
         meter = host.meter
-        return Start(self._branches.skips, host.outputs.mark(), meter.moves, meter.row)
+        asked = host.outputs.mark()
+        return Start(self._branches.skips, asked, meter.moves, meter.row, meter.driven)
 
     def most(self, passes: Passes[Block], reason: str) -> int:
         """How often a loop runs whose condition is not known; asked once in an execution."""
@@ -70,6 +71,7 @@ class Endings(Generic[Block]):
         if self._runs_out(passes):
             return
         passes.mark = host.outputs.mark()
+        self._look_at_state(passes)
         if not passes.looked or passes.skips != self._branches.skips:
             passes.watched = self._deciding(passes)
             passes.written = self._analysis.written(loop.body) | loop.writes
@@ -84,6 +86,17 @@ class Endings(Generic[Block]):
         passes.asked = host.position_asked
         passes.place = host.place
         passes.held = host.outputs.held()
+
+    def _look_at_state(self, passes: Passes[Block]) -> None:
+        """A pass begins: remember what decides which of its ways the robot is driven."""
+        host, loop = self._host, passes.loop
+        if loop.counts or passes.count >= FOLLOWED:
+            return
+        written = self._analysis.written(loop.body)
+        names = self._analysis.choosing(loop.body) & written
+        if names:
+            state = host.snapshot(names, written)
+            passes.heads.append((host.meter.moves, host.meter.driven, state))
 
     def _has_moved(self, passes: Passes[Block]) -> bool:
         """Whether a loop has moved the robot since it began."""
@@ -332,9 +345,13 @@ class Endings(Generic[Block]):
     def _cycle(self, passes: Passes[Block]) -> None:
         """The last pass of a loop that production runs in: what a cycle is."""
         begun = passes.begun[-1] if passes.count > 1 else passes.start.moves
-        moves = self._host.meter.moves
-        if moves > begun:
-            self._host.course.cycle = Cycle(begun, moves, passes.count, passes.loop.span)
+        end, length = self._host.meter.moves, 1
+        if len(passes.heads) == passes.count > 1:
+            first, behind = passes.last_round(self._host.meter)
+            heads = [*(moves for moves, *_ in passes.heads), end]
+            begun, end, length = heads[first], heads[behind], behind - first
+        if end > begun:
+            self._host.course.cycle = Cycle(begun, end, passes.count, passes.loop.span, length)
 
     def _satisfy(self, loop: Loop[Block], moving: bool, run: Callable[[Block], bool]) -> None:
         """Leave a loop that waits for others."""
@@ -391,6 +408,12 @@ class Endings(Generic[Block]):
         """End the program, if enough of an endless loop has been read."""
         cycles = self._host.course.answers.cycles if moving and self._has_moved(passes) else 1
         if passes.count < (answer or cycles):
+            return
+        if (
+            answer is None
+            and cycles == 1
+            and passes.is_under_way(self._host.meter, self._analysis.move_count(passes.loop.body))
+        ):
             return
         self._cycle(passes)
         words = f"({passes.loop.words})"

@@ -23,7 +23,9 @@ after a pass than before. If it does not get on, the first of these is so:
 - It reads outputs that only others can change: from now on these may have changed.
 - It does not move the robot: it waits for others, and is left, as all waits are satisfied at once;
   what its condition reads has values afterwards that end it, as after a wait.
-- It is endless. One pass is read (`Answers.cycles`), and the program ends there.
+- It is endless. One pass is read (`Answers.cycles`), and the program ends there. Of one that is
+  driven by a state, which a pass sets and the next one asks for, all are read until the state comes
+  back: they are the cycle.
 
 A loop that gets on without a move, for more statements than a program may execute in a row, passes
 time or waits for others, and is left.

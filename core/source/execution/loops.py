@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -9,8 +10,11 @@ from typing import Generic
 
 from ...errors import Span
 from .host import Snapshot
+from .limits import Meter
 from .steps import NOTHING, Block
 
+_IDLE = 10
+"""Passes in a row without a move, of a loop that a state drives, after which no more is read."""
 _BOUNDS = {"<": 1.0, "<=": 1.0, ">": -1.0, ">=": -1.0}
 """Comparisons that let a loop go on: the sign of what is left up to the bound."""
 
@@ -78,12 +82,14 @@ class Start:
         asked: see `Outputs.mark`.
         moves: that were read.
         statements: in a row without a move, so far.
+        driven: see `Meter.driven`.
     """
 
     skips: int
     asked: int
     moves: int
     statements: int
+    driven: int = 0
 
 
 @dataclass(slots=True)
@@ -114,6 +120,8 @@ class Passes(Generic[Block]):
         left: passes that it has left, as was foreseen, where these are too many to be read; None
             if that was not foreseen.
         polled: whether what its motion depends on has been left to others.
+        heads: where passes of one without an end began: how many moves had been read, how many
+            statements had moved the robot, and the data that decide about its motion.
     """
 
     loop: Loop[Block]
@@ -139,6 +147,40 @@ class Passes(Generic[Block]):
     row: int = 0
     runs_out: bool = False
     left: float | None = None
+    heads: list[tuple[int, int, Snapshot]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.mark = self.start.asked
+
+    def is_under_way(self, meter: Meter, most: int) -> bool:
+        """Whether a loop without an end has states of which not all have been passed: data that
+        choose where to drive are others than before any pass, and the last one drove what none
+        before it did, or did not drive. Of one that drove everything at once there are none.
+
+        Args:
+            most: how many of its statements move the robot.
+        """
+        heads = self.heads
+        if len(heads) != self.count or not all(state.changed() for *_, state in heads):
+            return False
+        moves, driven, _ = heads[-1]
+        if meter.moves == moves:
+            return self.count <= _IDLE or heads[-_IDLE][0] < moves
+        at_once = driven == self.start.driven and meter.driven >= driven + most
+        return driven < meter.driven and not at_once
+
+    def last_round(self, meter: Meter) -> tuple[int, int]:
+        """The passes that make the last round of a loop: the first one, and the one behind it.
+
+        From where the data that choose where to drive were as they are now; where they never were,
+        from behind the pass that drove like the last one that moved the robot.
+        """
+        states = [state for *_, state in self.heads]
+        again = next((k for k, state in enumerate(states) if not state.changed()), None)
+        if again is not None:
+            return again, self.count
+        heads = [*(moves for moves, *_ in self.heads), meter.moves]
+        ways = [tuple(meter.way[a:b]) for a, b in itertools.pairwise(heads)]
+        last = max((k for k, way in enumerate(ways) if way), default=self.count - 1)
+        like = next((k for k in range(last - 1, -1, -1) if ways[k] == ways[last]), -1)
+        return like + 1, last + 1

@@ -215,6 +215,12 @@ class Flow:
         self._evaluator.assign(statement.counter, unplaced(start), scope, statement.span)
         run = self._pass(scope)
 
+        def computed(symbol: str, left: Value, right: Value) -> Value:
+            try:
+                return apply(symbol, left, right)
+            except OperandError as error:
+                raise error.at(statement.span) from None
+
         def goes_on() -> bool | Undecided:
             counter = self._evaluator.names.value(statement.counter, scope)
             open_ = unknown or find_unknown(counter)
@@ -224,7 +230,7 @@ class Flow:
             stays = run(statement.body)
             if stays:
                 counter = self._evaluator.names.value(statement.counter, scope)
-                following = apply("+", counter, step)
+                following = computed("+", counter, step)
                 self._evaluator.assign(statement.counter, following, scope, statement.span)
             self._note_moved_bound(statement, stop, scope)
             return stays
@@ -236,13 +242,14 @@ class Flow:
         def distance() -> float | None:
             counter = self._evaluator.names.value(statement.counter, scope)
             up = not _is_number(step) or step > 0  # type: ignore[operator]
-            behind = apply("+", stop, step)  # the last one is driven
+            known = _is_number(stop) and _is_number(step)
+            behind = stop + step if known else None  # type: ignore[operator]  # the last is driven
             return loops.to_bound("<" if up else ">", counter, behind)
 
         def ended() -> None:
             passes = loops.passes_to(start, stop, step)
             if passes is not None:
-                end = apply("+", start, apply("*", passes, step))
+                end = computed("+", start, computed("*", passes, step))
                 self._evaluator.assign(statement.counter, end, scope, statement.span)
 
         loop = loops.Loop(

@@ -74,7 +74,8 @@ def all_calls(block: Block) -> set[str]:
 def expressions_of(statement: Statement) -> list[Expression]:
     """The expressions that a statement evaluates itself."""
     if isinstance(statement, tree.Assign):
-        return [statement.value, statement.target]
+        whole = isinstance(statement.target, tree.Name)
+        return [statement.value] if whole else [statement.value, statement.target]
     if isinstance(statement, tree.Evaluate):
         return [statement.expression]
     if isinstance(statement, tree.If):

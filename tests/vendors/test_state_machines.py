@@ -1,0 +1,149 @@
+"""Loops without an end that a state drives: a cycle is all passes until the state comes back."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flyby.core.program.program import Program
+from flyby.core.program.target import JointTarget
+from flyby.core.registry import find_robot, find_vendor
+from flyby.core.source.execution.answers import Answers
+
+ROBOTS = {"abb": "abb/irb1600-6-145", "kuka": "kuka/kr30-3", "ur": "ur/ur10e"}
+FILE = {"abb": "m.mod", "kuka": "m.src", "ur": "m.script"}
+FRAME = {
+    "abb": (
+        "MODULE m\nVAR num s:={first};\nVAR num n:=0;\nPROC main()\nWHILE TRUE DO\n{body}"
+        "ENDWHILE\nENDPROC\nPROC other()\n{other}ENDPROC\nENDMODULE\n"
+    ),
+    "kuka": (
+        "DEF m()\nDECL INT s,n\nBAS(#INITMOV,0)\ns={first}\nn=0\nLOOP\n{body}ENDLOOP\nEND\n"
+        "DEF other()\n{other}END\n"
+    ),
+    "ur": "def m():\ndef other():\n{other}end\ns={first}\nn=0\nwhile True:\n{body}end\nend\n",
+}
+MOVE = {
+    "abb": "MoveAbsJ [[{0},0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\n",
+    "kuka": "PTP {{A1 {0},A2 -90,A3 90,A4 0,A5 30,A6 0}}\n",
+    "ur": "movej([d2r({0}),-1.57,1.57,-1.57,-1.57,0])\n",
+}
+IF = dict.fromkeys(("abb", "kuka"), "IF {0} THEN\n{1}ENDIF\n") | {"ur": "if {0}:\n{1}end\n"}
+SET = {"abb": "{0}:={1};\n", "kuka": "{0}={1}\n", "ur": "{0}={1}\n"}
+CALL = {"abb": "other;\n", "kuka": "other()\n", "ur": "other()\n"}
+EQUAL = {"abb": "=", "kuka": "==", "ur": "=="}
+
+
+def step(language: str, at: int, next_: int, what: str) -> str:
+    """What is done in a state: once in a pass, as a later state of the same pass is another's."""
+    return IF[language].format(
+        f"n{EQUAL[language]}0 AND s{EQUAL[language]}{at}".replace(
+            "AND", "and" if language == "ur" else "AND"
+        ),
+        what + SET[language].format("s", next_) + SET[language].format("n", 1),
+    )
+
+
+def read(language: str, body: str, first: int = 0, other: str = "", cycles: int = 1) -> Program:
+    body = SET[language].format("n", 0) + body
+    other = other or SET[language].format("n", "n")
+    return find_vendor(language).read(
+        FRAME[language].format(first=first, body=body, other=other),
+        FILE[language],
+        robot=find_robot(ROBOTS[language]),
+        answers=Answers(goes_on=True, cycles=cycles),
+    )
+
+
+def places(program: Program) -> list[int]:
+    """The numbers that the moves of a program have been given."""
+    targets = [move.target for move in program.moves]
+    return [
+        round(t.joints[0] * 180 / 3.141592653589793) for t in targets if isinstance(t, JointTarget)
+    ]
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+@given(data=st.data())
+def test_a_cycle_is_all_states_until_the_first_comes_back(language, data) -> None:
+    count = data.draw(st.integers(2, 5))
+    order = data.draw(st.permutations(range(count)))
+    after = dict(zip(order, (*order[1:], order[0]), strict=True))
+    idle = data.draw(st.sets(st.sampled_from(order), max_size=count - 1))
+    body = "".join(
+        step(language, k, after[k], "" if k in idle else MOVE[language].format(k + 1))
+        for k in range(count)
+    )
+    first = next(k for k in order if k not in idle)  # a loop that begins idle may wait for others
+    program = read(language, body, first)
+    start = order.index(first)
+    driven = [k + 1 for k in (*order[start:], *order[:start]) if k not in idle]
+    assert places(program) == driven
+    cycle = program.cycle
+    assert cycle is not None and (cycle.begin, cycle.end) == (0, len(driven))
+    if len(driven) > 1:
+        assert cycle.passes == cycle.length == count
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_what_is_done_once_before_is_no_part_of_the_cycle(language) -> None:
+    states = (9, 1), (1, 2), (2, 1)
+    body = "".join(step(language, a, b, MOVE[language].format(a)) for a, b in states)
+    program = read(language, body, 9)
+    assert places(program) == [9, 1, 2]
+    assert program.cycle is not None
+    assert (program.cycle.begin, program.cycle.length, program.cycle.passes) == (1, 2, 3)
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_states_of_routines_count(language) -> None:
+    other = step(language, 0, 1, MOVE[language].format(1))
+    other += step(language, 1, 0, MOVE[language].format(2))
+    if language == "kuka":  # its data are those of the program alone
+        other = other.replace("n==0 AND ", "").replace("n=1\n", "")
+        return
+    assert places(read(language, CALL[language], 0, other)) == [1, 2]
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_one_without_states_has_one_pass(language) -> None:
+    body = MOVE[language].format(1) + SET[language].format("s", "s+1")
+    body += IF[language].format("s>0", MOVE[language].format(2))
+    program = read(language, body)
+    assert places(program) == [1, 2]
+    assert program.cycle is not None and program.cycle.length == 1
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_a_service_now_and_then_is_no_state(language) -> None:
+    """A pass more is read, in which it might have come; the cycle is one pass."""
+    body = MOVE[language].format(1) + SET[language].format("s", "s+1")
+    body += IF[language].format("s>50", MOVE[language].format(2))
+    program = read(language, body)
+    assert places(program) == [1, 1]
+    cycle = program.cycle
+    assert cycle is not None and (cycle.begin, cycle.end, cycle.length) == (1, 2, 1)
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_parts_that_are_counted_are_a_cycle_once_nothing_new_comes(language) -> None:
+    """A pass more is read, to see that."""
+    body = SET[language].format("s", "s+1")
+    for bound, at in ((2, 1), (3, 2)):
+        inner = MOVE[language].format(at) + SET[language].format("n", 1)
+        condition = f"s<{bound} {'and' if language == 'ur' else 'AND'} n{EQUAL[language]}0"
+        body += IF[language].format(condition, inner)
+    body += IF[language].format("s>2", MOVE[language].format(2))
+    program = read(language, body)
+    assert places(program) == [1, 2, 2, 2]
+    cycle = program.cycle
+    assert cycle is not None and (cycle.begin, cycle.end, cycle.length) == (3, 4, 1)
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_as_many_passes_as_are_asked_for_are_read(language) -> None:
+    states = (0, 1), (1, 0)
+    body = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in states)
+    program = read(language, body, cycles=5)
+    assert places(program) == [1, 2, 1, 2, 1]
