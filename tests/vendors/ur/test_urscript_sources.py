@@ -2,6 +2,7 @@
 
 import gzip
 import random
+import re
 import time
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, SourceError
+from flyby.core.program.move import MoveL
+from flyby.core.program.question import QuestionKind
 from flyby.core.program.target import JointTarget
 from flyby.core.registry import find_vendor
 from flyby.core.source.reading import Reading, ReadOptions
@@ -210,3 +213,37 @@ def test_damaged_programs_are_read_or_refused(chance: random.Random, noise: str)
         read(PROGRAM[:start] + noise + PROGRAM[end:], "t.script")
     except FlybyError as error:
         assert str(error)
+
+
+LIBRARIES = {
+    "lift.script": "z = 0.1\ndef lift(n):\n  movel(p[0.3, 0.1 * n, z, 0, 3, 0])\n  squeeze(1)\nend",
+    "hand.script": "def squeeze(width):\n  set_digital_out(0, width > 0)\nend",
+    "driving.script": "def park():\n  sleep(1)\nend\nmovej([0, -1, 1, -1, -1, 0])",
+    "old.script": "def lift_2():\nend",
+    "older.script": "def lift_2():\nend",
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "missing", "taken"),
+    [
+        ("lift(1)\nlift(2)", [], ["lift.script", "hand.script"]),
+        ("squeeze(0)\nmovej([0, -1, 1, -1, -1, 0])", [], ["hand.script"]),
+        ("park()\nlift(2)", ["park"], ["lift.script", "hand.script"]),
+        ("lift_2()", ["lift_2"], []),
+        ("def squeeze(n):\n  sleep(n)\nend\nsqueeze(1)", [], []),
+    ],
+)
+def test_files_beside_it_that_define_what_a_script_calls(text, missing, taken, tmp_path) -> None:
+    """Those that would drive by themselves are not taken, nor one of several that define it."""
+    for name, other in LIBRARIES.items():
+        (tmp_path / name).write_text(other, "utf-8")
+    path = tmp_path / "main.script"
+    path.write_text(text, "utf-8")
+    program = read_file(path)
+    away = [q.key for q in program.questions if q.kind is QuestionKind.ROUTINE]
+    told = [n.message for n in program.notes if "lies beside the program" in n.message]
+    assert away == missing
+    assert [message.partition(",")[0] for message in told] == taken
+    drives = [move.target.pose.position[1] for move in program.moves if isinstance(move, MoveL)]
+    assert drives == [0.1 * int(n) for n in re.findall(r"lift\((\d)\)", text)]

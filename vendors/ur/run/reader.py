@@ -50,6 +50,9 @@ from ..values.instructions import driven_by
 from .analysis import ScriptTree
 from .entry import run_program
 from .interpreter import Interpreter
+from .libraries import libraries_of
+
+_TAKEN = "{}, which lies beside the program, defines functions that it calls: it is read as well"
 
 
 def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
@@ -69,7 +72,7 @@ def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
 
 
 def read_file(path: str | Path, options: ReadOptions | None = None) -> Program:
-    """The program of a file; `ReadOptions.others` are executed before it.
+    """The program of a file; `ReadOptions.others` and libraries beside it are executed before it.
 
     A program's tree (``.urp``) is read as the script that PolyScope would make of it; spans count
     the lines of that script, and messages name the node. Where the tree holds no code of some
@@ -90,8 +93,15 @@ def read_file(path: str | Path, options: ReadOptions | None = None) -> Program:
     script = script_of_nodes(main) if isinstance(main, TreeFile) else None
 
     def of(source: SourceFile, more: Iterable[Note]) -> Program:
-        files = {**others, source.name: source}
-        return _read_files(files, source.name, options, (*notes, *more))
+        before = dict(others)
+        while True:
+            files = {**before, source.name: source}
+            program = _read_files(files, source.name, options, (*notes, *more))
+            found = libraries_of(program, Path(path), options.beside, files)
+            if not found:
+                return program
+            before = {**found, **before}
+            more = (*more, *(Note(_TAKEN.format(Path(name).name)) for name in found))
 
     if script is None:
         return of(main, told)
