@@ -164,7 +164,7 @@ class Controller:
             return _Attempt(None, self._plan(program, None))
         except MotionError as error:
             furthest = _Attempt(None, None, error)
-            if error.cause not in _DEPENDS_ON_START:
+            if not self._depends_on_start(program, error):
                 return furthest
         tries = min(_STARTS, max(8, _TRIED_MOVES // len(program.moves)))
         for start in self._other_starts(program)[:tries]:
@@ -178,6 +178,15 @@ class Controller:
                 notes = (_stands(self.robot, start), *path.notes)
                 return _Attempt(start, replace(path, notes=notes))
         return furthest
+
+    def _depends_on_start(self, program: Program, error: MotionError) -> bool:
+        if error.cause is FaultCause.REACH and error.move is not None:
+            try:  # A path that leaves the reach of one configuration may be within another's.
+                self._routes.standing_at(program.moves[error.move], None)
+            except MotionError:
+                return False
+            return True
+        return error.cause in _DEPENDS_ON_START
 
     def _other_starts(self, program: Program) -> Sequence[JointTarget]:
         """Where the robot may stand at the first target, but for the first guess."""

@@ -20,7 +20,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.zone import FINE, Radius
-from flyby.core.registry import find_vendor
+from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.vendors.abb.motion.configuration import AbbConfiguration
 
@@ -253,3 +253,17 @@ def test_a_posture_beyond_a_range_is_the_programs_own_value(tmp_path) -> None:
     assert "J3 would stand at 90.00 °" in fault.message
     assert "the program says this value itself" in fault.message
     assert "configuration" not in fault.message
+
+
+def test_another_start_is_tried_where_a_line_leaves_the_reach_of_the_first() -> None:
+    """A wrist turned over takes room: from there the arm is too short for what it else drives."""
+    points = "p[0.06,-0.28,-0.14,0,3.14,0]", "p[-0.04,-0.39,-0.14,0,3.14,0]"
+    text = "\n".join(f"movel({point}, a=0.5, v=0.1)" for point in points)
+    program = flyby.read(text, robot="ur/ur3e")
+    controller = Controller(find_vendor("ur"), find_robot("ur/ur3e"))
+    with pytest.raises(MotionError, match="leaves its reach") as refused:
+        controller._plan(program, None)
+    assert refused.value.cause is FaultCause.REACH
+    assert not drive(controller, program).faults
+    far = flyby.read(text.replace("-0.39", "-0.7"), robot="ur/ur3e")
+    assert controller.furthest_start(far) is None, "no start helps to reach it"
