@@ -65,6 +65,11 @@ def test_waits_before_all_and_behind_faults(tmp_path: Path) -> None:
     run = flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
     assert run.faults
     assert sum(line.total for line in run.lines) == pytest.approx(run.report.driven_time)
+    path.write_text(text.replace("    MoveJ p1", f"    {moves[0]}\n    WaitTime 5;\n    MoveJ p1"))
+    run = flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
+    assert run.faults and not run.moves[0].driven
+    waits = next(cause.time for cause in run.causes if cause.name == "waits of the program")
+    assert waits == run.report.first_wait + sum(move.wait for move in run.moves) < 5.0
 
 
 def test_causes_sum_up_to_the_time_and_say_what_they_give_back(run: flyby.Run) -> None:
