@@ -10,6 +10,7 @@ from ..program.assumed_places import assumed_places
 from ..program.program import Program
 from ..program.question import QuestionKind
 from ..program.target import JointTarget
+from ..robot.singularities import is_singular
 from .driven_program import DrivenPart, DrivenProgram, Fault, refusal
 
 _OF_PLACES = (
@@ -203,6 +204,9 @@ class _Drive:
         """That a move's tool or work object are not known, which may be why it cannot be driven."""
         if cause not in _OF_PLACES:
             return ""
+        if cause is FaultCause.SINGULARITY and self._begins_singular(move):
+            before = self._program.moves[move - 1].statement
+            return f"; it stands so where the move before ends ({before}), whatever the tool is"
         asked = self._assumed.get(move)
         frame = self._program.moves[move].work_object
         if not asked and frame.not_followed is not None:
@@ -217,4 +221,11 @@ class _Drive:
             f"; {' and '.join(asked)} {be} not known, and may well be why: say what "
             f"{'it is' if be == 'is' else 'they are'} in a file ({spelt('answers')}; `flyby ask` "
             "writes one, and looks for what would do)"
+        )
+
+    def _begins_singular(self, move: int) -> bool:
+        """Whether the joints that the move before ends at are a singularity themselves."""
+        before = self._program.moves[move - 1].target if move else None
+        return isinstance(before, JointTarget) and is_singular(
+            self._controller.robot, before.joints
         )

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import FloatArray
 from .inverse.arm_inverse import SOLVERS
 from .inverse.ranges import FULL_TURN
 from .kinematics.chain_kernels import poses
@@ -26,6 +27,9 @@ class Singularity(NamedTuple):
     meaning: str
     remedy: str
 
+
+_IN_IT = 1e-6
+"""Of the distance from a singularity: as near as the closed form tells."""
 
 _KINDS = (
     Singularity(
@@ -49,6 +53,18 @@ _KINDS = (
 def nearest_singularity(robot: Robot, q: ArrayLike) -> Singularity | None:
     """The singularity that a configuration (N,) is nearest to; None where no closed form of the
     arm tells them apart."""
+    apart = _distances(robot, q)
+    return None if apart is None else _KINDS[int(np.argmin(apart))]
+
+
+def is_singular(robot: Robot, q: ArrayLike) -> bool:
+    """Whether an arm stands in a singularity itself, as far as a closed form tells."""
+    apart = _distances(robot, q)
+    return apart is not None and float(np.min(apart)) < _IN_IT
+
+
+def _distances(robot: Robot, q: ArrayLike) -> FloatArray | None:
+    """How far a configuration is from each kind, without a unit."""
     known = robot.recognised
     if known is None:
         return None
@@ -60,4 +76,4 @@ def nearest_singularity(robot: Robot, q: ArrayLike) -> Singularity | None:
     apart -= FULL_TURN * np.round(apart / FULL_TURN)
     shoulder, *sines = np.abs(measures[0, np.argmin(np.abs(apart).max(axis=1)), :3])
     upper = np.linalg.norm(known.geometry.elbow - known.geometry.shoulder)
-    return _KINDS[int(np.argmin([shoulder / upper, *sines]))]
+    return np.array([shoulder / upper, *sines])

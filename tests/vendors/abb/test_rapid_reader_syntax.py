@@ -111,6 +111,8 @@ def test_compact_if_holds_one_statement():
         ("MODULE M\nCONST num a:=1E999;\nENDMODULE", (2, 14), "too large"),
         ("MODULE M\n\x00\x01\nENDMODULE", (2, 1), "binary"),
         ("PROC Path_10()\nENDPROC\n", (1, 1), "this is a part of a module"),
+        ("MODULE 2weld\nENDMODULE", (1, 8), "the number 2 stands where the module's name"),
+        ("MODULE M\nCONST string s:='a';\nENDMODULE", (2, 17), 'strings stand in "'),
     ],
 )
 def test_errors_say_where_and_what(text, place, words):

@@ -401,3 +401,12 @@ def test_a_frame_that_is_declared_and_nowhere_set_is_assumed_by_its_name(tmp_pat
     )
     assert not assumed_places(answered)
     assert answered.moves[-1].work_object.pose.position[0] == pytest.approx(0.05)
+
+
+def test_joints_that_are_singular_themselves_are_no_fault_of_an_unknown_tool(
+    tmp_path: Path,
+) -> None:
+    body = "BAS(#TOOL,3)\n" + START + "PTP {A5 0}\nLIN_REL {Y 50}\n"
+    (fault,) = drive(Controller(VENDOR, KR30), read(body, tmp_path)).faults
+    assert "it stands so where the move before ends (m.src:4:1), whatever" in fault.message
+    assert "TOOL_DATA" not in fault.message

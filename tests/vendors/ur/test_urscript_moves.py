@@ -132,6 +132,7 @@ def test_motion_that_is_made_at_run_time_is_kept_by_name(call: str, reason: str)
 def test_a_program_of_streams_says_so(before: str) -> None:
     message = refusal(f"{before}while True:\n  servoj([0,0,0,0,0,0], t=0.002)\nend")
     assert "servoj drives the robot in steps of a control loop" in message
+    assert "freedrive_mode lets forces of contact move" in refusal(f"{before}freedrive_mode()")
 
 
 # ------------------------------------------------------------------------ targets

@@ -160,6 +160,8 @@ def string_value(literal: str) -> str:
 
 
 def _stray(text: str, at: int) -> str:
+    if text[at] == "'":
+        return f'{text[at]!r} does not belong here: strings stand in "'
     return UNCLOSED if text[at] == '"' else stray(text[at], "a RAPID text")
 
 

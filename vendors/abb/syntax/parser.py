@@ -16,7 +16,7 @@ from ....core.errors import ParseError
 from ....core.source.text.files import SourceText
 from .cursor import Cursor
 from .expressions import parse_braces, parse_expression
-from .lexer import END, NAME, tokenize
+from .lexer import END, NAME, NUMBER, tokenize
 from .statements import CLOSING, parse_block
 from .tree import (
     AliasDefinition,
@@ -74,8 +74,23 @@ def _module(cursor: Cursor) -> Module:
             start,
         )
     cursor.expect("module", "at the beginning of the file")
-    text = cursor.name("the module's name")
+    text = _module_name(cursor)
     return _content(cursor, start, text, _attributes(cursor), "endmodule")
+
+
+def _module_name(cursor: Cursor) -> str:
+    """A module's name; of a damaged text also one that begins with a digit."""
+    damage, begin = cursor.source.damage, cursor.index
+    if cursor.kind != NUMBER or damage is None:
+        return cursor.name("the module's name")
+    cursor.advance()
+    while cursor.kind in (NAME, NUMBER) and cursor.start == cursor.ends[cursor.index - 1]:
+        cursor.advance()
+    start, end = cursor.starts[begin], cursor.ends[cursor.index - 1]
+    text = cursor.source.text[start:end]
+    error = cursor.source.error(f"the module's name {text} begins with a digit", start)
+    damage.step_over(error, "it is read all the same")
+    return text
 
 
 def _content(

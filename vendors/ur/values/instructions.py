@@ -164,9 +164,14 @@ def streamed(name: str, span: Span) -> LeftOpenError:
     Args:
         name: of the function that takes it.
     """
+    how = (
+        "lets forces of contact move the robot"
+        if name.startswith(("force", "freedrive", "teach"))
+        else "drives the robot in steps of a control loop"
+    )
     return LeftOpenError(
-        f"{name} drives the robot in steps of a control loop, which are not emulated, and there is "
-        "nothing else to drive: say where it drives in a file of joints over time "
+        f"{name} {how}, which is not emulated, and there is nothing else to drive: say where it "
+        "drives in a file of joints over time "
         f'({spelt("answers")}: [streams] {name} = "joints.csv", whose first line is '
         "time,j1,j2,j3,j4,j5,j6, in s and degrees), or write the motion as movej, movel or movep",
         span,

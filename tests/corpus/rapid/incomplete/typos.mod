@@ -1,4 +1,4 @@
-MODULE Typos
+MODULE 2_Typos_R1
     CONST robtarget Target_10:=[[900,0,700],[0,0,1,0],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];
     PROC main()
         MoveJ Target_10,v1000,z100,tool0\WObj:=wobj0
