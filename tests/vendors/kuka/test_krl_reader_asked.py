@@ -410,3 +410,11 @@ def test_joints_that_are_singular_themselves_are_no_fault_of_an_unknown_tool(
     (fault,) = drive(Controller(VENDOR, KR30), read(body, tmp_path)).faults
     assert "it stands so where the move before ends (m.src:4:1), whatever" in fault.message
     assert "TOOL_DATA" not in fault.message
+
+
+def test_loads_that_no_file_says_are_answered_as_they_are_shown(tmp_path: Path) -> None:
+    body = START + "$LOAD=LOAD_DATA[4]\n" + START.replace("A1 0", "A1 9")
+    (load,) = [q for q in read(body, tmp_path).questions if q.key == "LOAD_DATA[4]"]
+    assert load.example == (("M", 1.0),)
+    told = read(body, tmp_path, '"LOAD_DATA[4]" = { M = 12 }').moves[-1].tool.load
+    assert told is not None and told.mass == 12.0

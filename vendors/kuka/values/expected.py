@@ -22,6 +22,7 @@ EXPECTED: dict[str, tuple[str, Answer]] = {
     "fdat": ("tool and base of a motion (FDAT)", Fields(_FDAT.items())),
     "pdat": ("%, and mm or % of approximation (PDAT)", Fields(_PDAT.items())),
     "ldat": ("m/s, %, and mm of approximation (LDAT)", Fields({**_PDAT, "VEL": 2.0}.items())),
+    "load": ("kg at the flange (LOAD)", Fields({"M": 1.0}.items())),
     "eki_status": ("what EthernetKRL says of a call (EKI_STATUS)", Fields(_STATUS.items())),
     "ipo_m_t": ("#BASE or #TCP", "#BASE"),
 }
