@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flyby.core.errors import FlybyError, InputError, SourceError
+from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import EventAnchor
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
@@ -165,7 +166,8 @@ def test_arcs_stay_on_their_circle(radius, first, second, degrees, backwards, fo
     points = [
         Pose((radius * math.cos(a), radius * math.sin(a), 0.3)) for a in (0, first, first + second)
     ]
-    arcs = beyond(*points, -degrees if backwards else degrees, follows)
+    arcs, of_circle = beyond(*points, -degrees if backwards else degrees, follows)
+    assert of_circle == pytest.approx(radius)
     for k, (middle, end) in enumerate(arcs):
         one = degrees / len(arcs)
         assert one < 360
@@ -173,6 +175,20 @@ def test_arcs_stay_on_their_circle(radius, first, second, degrees, backwards, fo
             turned = math.radians(-angle if backwards else angle)
             expected = (radius * math.cos(turned), radius * math.sin(turned), 0.3)
             np.testing.assert_allclose(pose.position, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("radius", [100, 300])
+def test_a_full_turn_is_driven_on_its_circle(krl, robot, radius):
+    body = (
+        "LIN {X 1500,Y 0,Z 1200,A 0,B 90,C 0}\n"
+        f"CIRC {{X {1500 - radius},Y {radius}}},{{X {1500 - 2 * radius},Y 0}}, CA 360"
+    )
+    program = krl(f"$VEL.CP=0.1\n$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\n{body}", "", robot=robot)
+    driven = Controller(find_vendor("kuka"), robot).run(program).trajectory.position
+    x, y, z = (driven - [1.5 - radius / 1000, 0, 1.2]).T
+    assert np.hypot(np.hypot(x, y) - radius / 1000, z).max() < 2e-3 * radius / 1000
+    length = np.linalg.norm(np.diff(driven, axis=0), axis=1).sum()
+    assert length == pytest.approx(2 * math.pi * radius / 1000, rel=2e-3)
 
 
 def test_missing_components_keep_the_present_value(krl):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,9 +21,19 @@ _MOST = 10 * _FULL_TURN
 _FLAT = 1e-9
 
 
-def beyond(
-    start: Pose, via: Pose, end: Pose, degrees: float, follows: bool
-) -> list[tuple[Pose, Pose]]:
+class Arcs(NamedTuple):
+    """Arcs one after the other on a circle.
+
+    Args:
+        parts: of each the point half way and the end point.
+        radius: of the circle, m.
+    """
+
+    parts: list[tuple[Pose, Pose]]
+    radius: float
+
+
+def beyond(start: Pose, via: Pose, end: Pose, degrees: float, follows: bool) -> Arcs:
     """The arcs that go on the circle of three points by an angle.
 
     Args:
@@ -32,8 +43,7 @@ def beyond(
         follows: whether the tool turns with the arc.
 
     Returns:
-        Of each the point half way and the end point; the last end keeps the orientation that is
-        programmed for it.
+        The last end keeps the orientation that is programmed for it.
 
     Raises:
         InputError: the points lie on a line, or the angle is no part of a few turns.
@@ -53,7 +63,7 @@ def beyond(
         place = _turned(p, centre, normal, final)
         half = Pose(_turned(p, centre, normal, middle), via.quaternion)
         made.append((half, Pose(place, turned)))
-    return made
+    return Arcs(made, float(np.linalg.norm(p - centre)))
 
 
 def _between(start: Pose, end: Pose, share: float, axis: FloatArray, turn: float) -> Quaternion:

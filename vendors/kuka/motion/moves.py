@@ -18,7 +18,7 @@ from ....core.program.move import Move, MoveC, MoveJ, MoveL, Opaque
 from ....core.program.speed import Speed
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.program.tool import Load, Tool, WorkObject
-from ....core.program.zone import FINE, Zone
+from ....core.program.zone import FINE, ROOM, Radius, Zone
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.provenance import ELSEWHERE, MovePart
 from ....core.source.execution.transcript import MoveParts, Transcript
@@ -206,9 +206,9 @@ class MotionReader:
                 f"{motion.word.upper()} takes positions, not axis values", motion.span
             )
         via_part = self._part(motion.targets[0].span, auxiliary.sources)
-        arcs = [(via, target)]
+        arcs, between = [(via, target)], ROOM
         if motion.angle is not None:
-            arcs = self._by_angle(motion, motion.angle, scope, start, via, target)
+            arcs, between = self._by_angle(motion, motion.angle, scope, start, via, target)
             via_part = MovePart(motion.targets[0].span)
             for read in (auxiliary.sources, found.sources):
                 self.targets.read_by_expression(read.entries)
@@ -219,7 +219,7 @@ class MotionReader:
             found = replace(found, target=end, complete=complete)
             found = self._constant_orientation(found, start, placement, motion)
             part = motion if number == len(arcs) else replace(motion, passed=True)
-            how = self._common(part, False, placement)
+            how = self._common(part, False, placement, between)
             assert isinstance(found.target, PoseTarget)
             move = MoveC(
                 found.target,
@@ -241,16 +241,19 @@ class MotionReader:
         start: Struct | Unknown | None,
         via: PoseTarget,
         target: PoseTarget,
-    ) -> list[tuple[PoseTarget, PoseTarget]]:
-        """``CA``: the auxiliary and the end points of the arcs that are really driven."""
+    ) -> tuple[list[tuple[PoseTarget, PoseTarget]], Radius]:
+        """``CA``: the auxiliary and the end points of the arcs that are really driven, and the zone
+        in which one goes over into the next."""
         degrees = self.evaluator.number(angle, scope, "CA")
         begin = _known_start(start, "an arc of angle CA", motion.span)
         follows = self._arc_orientation(motion) is ArcOrientation.FOLLOWS_ARC
         try:
-            arcs = beyond(pose_of(begin.fields), via.pose, target.pose, degrees, follows)
+            parts, radius = beyond(pose_of(begin.fields), via.pose, target.pose, degrees, follows)
         except InputError as error:
             raise SourceError(str(error), motion.span) from None
-        return [(replace(via, pose=half), replace(target, pose=end)) for half, end in arcs]
+        # A blend as wide as this stays on the circle, to 0.1 % of its radius.
+        zone = ROOM.resized(radius / 3)
+        return [(replace(via, pose=half), replace(target, pose=end)) for half, end in parts], zone
 
     def _arc_orientation(self, motion: MotionInstruction) -> ArcOrientation:
         kind = self.settings.choice("$circ_type", motion.span)
@@ -291,8 +294,10 @@ class MotionReader:
 
     # -------------------------------------------------------------------------- parts
 
-    def _common(self, motion: MotionInstruction, joint: bool, placement: Placement) -> Manner:
-        """How a move is driven."""
+    def _common(
+        self, motion: MotionInstruction, joint: bool, placement: Placement, room: Radius = ROOM
+    ) -> Manner:
+        """How a move is driven; where another segment follows, it is passed in ``room``."""
         settings, span, lost = self.settings, motion.span, ""
         try:
             speed = settings.joint_speed(span) if joint else settings.path_speed(span)
@@ -301,7 +306,7 @@ class MotionReader:
         spline = motion.word.startswith("s")
         try:
             if motion.passed:
-                zone = settings.passing(joint)
+                zone = settings.passing(joint, room)
             else:
                 zone = settings.zone(motion.approximation, joint, spline, motion.approximated)
         except LostError as error:

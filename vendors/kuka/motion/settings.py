@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 from ....core.errors import SourceError, Span
 from ....core.program.speed import Speed
-from ....core.program.zone import FINE, ROOM, Angle, ContourFraction, Radius, VendorZone, Zone
+from ....core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
 from ..values.predefined import AXES
 from ..values.provenance import Sources
 from ..values.scope import Variable
@@ -278,9 +278,9 @@ class Settings:
         kind = self._criterion(words, joint, spline, span)
         return self._cached(("zone", kind), lambda: self._zone(kind, span))
 
-    def passing(self, joint: bool) -> Set:
-        """Of a point inside a spline block: as far as there is room on either side."""
-        return Set(ContourFraction(1.0) if joint else ROOM, _NOTHING)
+    def passing(self, joint: bool, room: Radius) -> Set:
+        """Of a point at which another segment of a spline block or of a circle follows."""
+        return Set(ContourFraction(1.0) if joint else room, _NOTHING)
 
     def _criterion(self, words: tuple[str, ...], joint: bool, spline: bool, span: Span) -> str:
         """The component of ``$APO`` that counts."""
