@@ -123,7 +123,7 @@ def moves_table(report: Report, sources: SourceList, track: int) -> PageTable:
             )
         else:
             why = "not driven" if move.fault is None else f"fault: {move.fault.cause}"
-            cells = (*head, None, None, None, None, None, None, "", why)
+            cells = (*head, None, None, move.wait or None, None, None, None, "", why)
         t = move.begin if move.driven else None
         rows.append(PageRow(cells, level, track, t, move.number - 1, source, line))
     return PageTable("Moves", MOVES, rows, track=track)

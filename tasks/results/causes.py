@@ -11,6 +11,7 @@ from ...core.driving.without_limits import seconds_without
 from ...core.errors import MotionError, Span
 from ...core.motion.emulator.binding_limits import limit_seconds
 from ...core.motion.emulator.controller import Controller
+from ...core.program.program import Program
 from .report import Report, seconds
 from .shares import standing
 
@@ -90,7 +91,7 @@ def causes_of(
         for name, by_place in account.spent.items()
         if sum(by_place.values()) >= SMALLEST * report.driven_time
     ]
-    found += [*_rests(driven, report), *_stops(controller, driven, zone)]
+    found += [*_rests(driven.program, report), *_stops(controller, driven, zone)]
     return tuple(sorted(found, key=lambda cause: -(cause.gain or 0.0)))
 
 
@@ -111,14 +112,14 @@ def _cause(
     return TimeCause(name, sum(by_place.values()), gain, tuple(moves), most)
 
 
-def _rests(driven: DrivenProgram, report: Report) -> Iterator[TimeCause]:
+def _rests(program: Program, report: Report) -> Iterator[TimeCause]:
     """Standing still: all of it would be given back, as the stops stay."""
     account = _Account({})
-    for part in driven.parts:
-        for wait, done in standing(part.run.program):
-            move = part.first + max(done, 1)
-            span = wait.span or report.moves[move - 1].span
-            account.add(DEVICES if wait.device else WAITS, move, span, wait.duration)
+    first = next((move.number for move in report.moves if move.driven), 1)
+    for wait, done in standing(program, report):
+        move = done or first
+        span = wait.span or report.moves[move - 1].span
+        account.add(DEVICES if wait.device else WAITS, move, span, wait.duration)
     for row in report.moves:
         account.add(SETTLING, row.number, row.span, row.settling)
     for name, by_place in account.spent.items():

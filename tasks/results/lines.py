@@ -99,12 +99,11 @@ def lines_of(program: Program, report: Report) -> tuple[LineReport, ...]:
     for wait in waits.get(0, ()):
         _at(lines, wait.span, 0).waits.append((wait, 0))
     for move in report.moves:
-        if not move.driven:
-            continue
         own = waits.get(move.number, ())
-        line = _at(lines, move.span, move.number)
-        line.moves.append(move)
-        line.unnamed += move.wait - sum(wait.duration for wait in own)
+        if move.driven:
+            line = _at(lines, move.span, move.number)
+            line.moves.append(move)
+            line.unnamed += move.wait - sum(wait.duration for wait in own)
         for wait in own:
             _at(lines, wait.span, move.number).waits.append((wait, move.number))
     return tuple(map(_line, lines.values()))
@@ -116,15 +115,14 @@ def _at(lines: dict[object, _Line], span: Span | None, number: int) -> _Line:
 
 
 def _waits(program: Program, report: Report) -> dict[int, list[Wait]]:
-    """Waits with a line, by the number of the driven move that they stand behind; 0 for those
-    before the first move of a part."""
-    spent = {move.number: move.wait for move in report.moves if move.driven}
+    """Waits with a line, by the number of the move in whose row they are; 0 for those before the
+    first move."""
+    spent = {move.number: move.wait for move in report.moves}
     spent[0] = report.first_wait
     found: dict[int, list[Wait]] = {}
-    for wait, done in standing(program):
-        number = _behind(done, report)
-        if number is not None and wait.span is not None and wait.duration > 0.0:
-            found.setdefault(number, []).append(wait)
+    for wait, done in standing(program, report):
+        if wait.span is not None and wait.duration > 0.0:
+            found.setdefault(_behind(done, report), []).append(wait)
     return {
         number: own
         for number, own in found.items()
@@ -132,14 +130,12 @@ def _waits(program: Program, report: Report) -> dict[int, list[Wait]]:
     }
 
 
-def _behind(done: int, report: Report) -> int | None:
-    """The driven move that what comes behind a move stands behind; 0 where it is before a part's
-    first, None where nothing is driven."""
-    for first, last in report.parts:
-        if first - 1 <= done <= last:
-            driven = [move.number for move in report.moves[first - 1 : done] if move.driven]
-            return driven[-1] if driven else 0
-    return None
+def _behind(done: int, report: Report) -> int:
+    """The row of what comes behind so many moves: the last of them in its part that is driven,
+    else the one behind which the part begins."""
+    before = next((a - 1 for a, b in report.parts if a - 1 <= done <= b), 0)
+    driven = (move.number for move in report.moves[before:done][::-1] if move.driven)
+    return next(driven, before)
 
 
 def _line(line: _Line) -> LineReport:

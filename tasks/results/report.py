@@ -95,7 +95,8 @@ class MoveReport:
         span: where the move stands in its source.
         fault: why it cannot be driven; None where it can.
         driven: False for moves at fault, moves to where the robot goes on behind one, and moves
-            that go nowhere or are left out; all below is then empty.
+            that go nowhere or are left out; all below is then empty, but for what the robot waits
+            where it is taken to stand behind a fault.
         length: of the TCP's path in its work object, m.
         begin: s, when the commanded motion enters the move's share of the path: at the waypoint
             before, or in the middle of its zone.
@@ -237,12 +238,18 @@ def make_report(
     """
     faults = {fault.move: fault for fault in driven.faults}
     moves = [_empty(i, move, faults.get(i)) for i, move in enumerate(driven.program.moves)]
-    program, waiting = driven.program, 0.0
+    program, waiting, first_wait = driven.program, 0.0, 0.0
     for part, clock in zip(driven.parts, driven.begins, strict=True):
         for i, row in _rows(part.run, robot).items():
             number = part.first + i + 1
             moves[number - 1] = replace(row, number=number, begin=row.begin + clock)
-        waiting += float(part.run.path.route.dwell.sum())
+        dwell = part.run.path.route.dwell
+        waiting += float(dwell.sum())
+        if part.first:  # behind a gap the robot waits where it is taken to stand
+            there = moves[part.first - 1]
+            moves[part.first - 1] = replace(there, begin=clock, wait=float(dwell[0]))
+        else:
+            first_wait = float(dwell[0])
     if not driven.parts:
         waiting = driven.duration
     moves = [
@@ -261,7 +268,7 @@ def make_report(
         time_range=time_range,
         assumed=tuple(robot.spread),
         unknown=tuple(dict.fromkeys(chain.from_iterable(assumed_places(program).values()))),
-        first_wait=sum(float(part.run.path.route.dwell[0]) for part in driven.parts),
+        first_wait=first_wait,
         waiting=waiting,
         settling=sum(move.settling for move in moves),
         length=sum(move.length for move in moves),
@@ -384,7 +391,7 @@ def move_row(move: MoveReport) -> tuple[str, ...]:
     line = "" if move.span is None else str(move.span.line)
     head = (str(move.number), move.kind, target_text(move), line)
     if not move.driven:
-        return (*head, *[""] * (len(COLUMNS) - len(head) - 1), _not_driven(move))
+        return (*head, "", "", seconds(move.wait), *[""] * 4, _not_driven(move))
     return (
         *head,
         f"{1e3 * move.length:.1f}",

@@ -49,12 +49,16 @@ class CycleShares:
         return f"{what} of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
 
 
-def standing(program: Program) -> Iterator[tuple[Wait, int]]:
-    """The waits of a program, each with how many moves come before it."""
+def standing(program: Program, report: Report) -> Iterator[tuple[Wait, int]]:
+    """The waits that are driven, each with how many moves come before it.
+
+    Behind a fault the robot waits only where it can stand.
+    """
     done = 0
     for statement in program.statements:
         if isinstance(statement, Wait):
-            yield statement, done
+            if not report.parts or any(a - 1 <= done <= b for a, b in report.parts):
+                yield statement, done
         elif not isinstance(statement, Opaque):
             done += 1
 
@@ -66,7 +70,7 @@ def shares(program: Program, report: Report) -> CycleShares:
     # What stands behind the last move of a pass stands before the first one of the next, too.
     last = end - 1 if cycle is not None and cycle.passes > cycle.length else end
     waiting, devices = 0.0, 0.0
-    for wait, done in standing(program):
+    for wait, done in standing(program, report):
         if begin <= done <= last:
             waiting += 0.0 if wait.device else wait.duration
             devices += wait.duration if wait.device else 0.0

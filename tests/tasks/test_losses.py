@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import flyby
+from flyby.tasks.results.report import move_row
 
 ROOT = Path(__file__).parents[2]
 LOOP = """MODULE Loop
@@ -63,8 +64,17 @@ def test_waits_before_all_and_behind_faults(tmp_path: Path) -> None:
     moves = [f"MoveL Offs(p1,{x},0,0), v500, fine, tool0;" for x in (9000, 50, 0)]
     path.write_text(text.replace("ENDFOR", "ENDFOR\n" + "\nWaitTime 3;\n".join(moves)))
     run = flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
+    report = run.report
     assert run.faults
-    assert sum(line.total for line in run.lines) == pytest.approx(run.report.driven_time)
+    assert sum(line.total for line in run.lines) == pytest.approx(report.driven_time)
+    # It waits where it is taken to stand behind the fault, and not where it cannot stand.
+    assert (report.first_wait, report.waiting) == (0.25, pytest.approx(0.25 + 2 * 1.625 + 3.0))
+    fault = run.faults[0].move
+    assert [row.wait for row in report.moves[fault:]] == [0.0, 3.0, 0.0]
+    assert report.first_wait + sum(row.wait for row in report.moves) == report.waiting
+    told = {cause.name: cause for cause in run.causes}["waits of the program"]
+    assert told.time == told.gain == pytest.approx(report.waiting)
+    assert move_row(report.moves[fault + 1])[6] == "3.000"
     path.write_text(text.replace("    MoveJ p1", f"    {moves[0]}\n    WaitTime 5;\n    MoveJ p1"))
     run = flyby.emulate(flyby.read(path, robot="abb/irb6640-180-255"))
     assert run.faults and not run.moves[0].driven

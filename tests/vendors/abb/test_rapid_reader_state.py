@@ -301,6 +301,20 @@ def test_a_main_that_goes_the_same_way_again_is_not_spoken_of():
     assert not any("next pass" in n.message for n in program(count, data=SHARED).notes)
 
 
+@pytest.mark.parametrize("said", ["state:=1;", "init;", "IF n=0 THEN\nstate:=1;\nENDIF", "ask;"])
+def test_a_main_that_writes_what_it_decides_by_is_not_spoken_of(said):
+    """What each pass writes first does not come from the pass before."""
+    data = (
+        "VAR num state;\nPROC init()\nstate:=1;\nENDPROC\n"
+        'PROC ask()\nTPReadNum state,"which?";\nENDPROC'
+    )
+    answers = Answers({"state": 1.0})
+    body = f"{said}\nTEST state\nCASE 1:\nMoveL p,v100,fine,tool0;\nENDTEST"
+    read = program(body, data=data, answers=answers)
+    assert len(read.moves) == 1
+    assert not any("next pass" in n.message for n in read.notes)
+
+
 def test_an_endless_loop_in_main_is_its_passes():
     body = "WHILE TRUE DO\nMoveL Offs(p,0,0,n),v100,fine,tool0;\nn:=n+10;\nENDWHILE"
     assert len(program(body, answers=Answers(cycles=3)).moves) == 3

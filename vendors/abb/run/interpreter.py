@@ -101,7 +101,8 @@ class Interpreter(RapidHost):
                     if not self.out.stops(error):
                         raise
                     break
-            other = next_pass(self.evaluator, before) if self.course.answers.cycles == 1 else None
+            body, once = self.tree.body(entry), self.course.answers.cycles == 1
+            other = next_pass(self.evaluator, before, self.analysis, body) if once else None
             if other is not None:
                 self.out.notes.once("pass", other[1], other[0].span)
 

@@ -10,14 +10,16 @@ from collections.abc import Iterator, Sequence
 
 from ....core.door import spelt
 from ....core.errors import SourceError
+from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.steps import NOTHING
 from ..syntax import tree
 from ..syntax.traversal import names_in
 from ..values.evaluator import Evaluator
 from ..values.scope import Scope, Variable
 from ..values.types import Unknown, Value
 
-Decisive = Sequence[tuple[tree.Expression, Variable, Value]]
-"""What a routine decides by in its own statements: where, the datum, and its value."""
+Decisive = Sequence[tuple[int, tree.Expression, Variable, Value]]
+"""What a routine decides by in its own statements: in which, where, the datum, and its value."""
 
 
 def decisive(evaluator: Evaluator, body: tree.Block, scope: Scope) -> Decisive:
@@ -27,23 +29,29 @@ def decisive(evaluator: Evaluator, body: tree.Block, scope: Scope) -> Decisive:
         scope: in which the routine's names are looked up.
     """
     found = []
-    for expression in _conditions(body):
+    for index, expression in _conditions(body):
         for name in sorted(names_in(expression)):
             cell = scope.find(name)
             value = None if cell is None or cell.constant else _value(evaluator, cell)
             if cell is not None and value is not None:
-                found.append((expression, cell, value))
+                found.append((index, expression, cell, value))
     return found
 
 
-def next_pass(evaluator: Evaluator, before: Decisive) -> tuple[tree.Expression, str] | None:
+def next_pass(
+    evaluator: Evaluator, before: Decisive, analysis: Analysis[tree.Block], body: tree.Block
+) -> tuple[tree.Expression, str] | None:
     """What decides otherwise in the next pass, and what is to be said of it; None if nothing does.
 
     Args:
         before: as it was at the beginning of this one.
+        analysis: knows what the statements of ``body`` write: what is written in each pass before
+            it is asked for does not come from the one before.
     """
-    for expression, cell, value in before:
+    for index, expression, cell, value in before:
         if _value(evaluator, cell) not in (None, value):
+            if cell.name.lower() in _written(analysis, body, index):
+                continue
             said = (
                 f"main ends here, and its next pass goes another way, as {cell.name} has another "
                 "value now: controllers run it again and again; "
@@ -61,9 +69,16 @@ def _value(evaluator: Evaluator, cell: Variable) -> Value | None:
     return None if isinstance(value, Unknown) else value
 
 
-def _conditions(body: tree.Block) -> Iterator[tree.Expression]:
-    for statement in body.statements:
+def _conditions(body: tree.Block) -> Iterator[tuple[int, tree.Expression]]:
+    for index, statement in enumerate(body.statements):
         if isinstance(statement, tree.Test):
-            yield statement.subject
+            yield index, statement.subject
         elif isinstance(statement, tree.If):
-            yield from (branch.condition for branch in statement.branches)
+            yield from ((index, branch.condition) for branch in statement.branches)
+
+
+def _written(analysis: Analysis[tree.Block], body: tree.Block, count: int) -> frozenset[str]:
+    """Names of the data that the first statements may write."""
+    steps = analysis.steps(body)[:count]
+    blocks = (block for step in steps for block in (*step.calls, *step.inner))
+    return NOTHING.union(*(step.writes for step in steps), *map(analysis.written, blocks))
