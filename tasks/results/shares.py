@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ...core.display import counted
 from ...core.program.move import Opaque, Wait
 from ...core.program.program import Program
 from .report import Report
@@ -21,6 +22,7 @@ class CycleShares:
         passes: that were read of the loop; 0 where there is none.
         line: of the loop; 0 where there is none.
         length: how many passes of it make the cycle.
+        faults: of its moves, which take nobody knows how long.
     """
 
     motion: float
@@ -29,6 +31,7 @@ class CycleShares:
     passes: int = 0
     line: int = 0
     length: int = 1
+    faults: int = 0
 
     @property
     def total(self) -> float:
@@ -45,6 +48,8 @@ class CycleShares:
         if not self.passes:
             return told
         which = "" if self.passes == self.length else f", the last of {self.passes}"
+        if self.faults:
+            which += f", but for {counted(self.faults, 'fault')}"
         what = "one pass" if self.length == 1 else f"{self.length} passes, one cycle"
         return f"{what} of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
 
@@ -75,6 +80,8 @@ def shares(program: Program, report: Report) -> CycleShares:
             waiting += 0.0 if wait.device else wait.duration
             devices += wait.duration if wait.device else 0.0
     motion = sum(move.time + move.settling for move in report.moves[begin:end])
+    faults = sum(move.fault is not None for move in report.moves[begin:end])
     if cycle is None:
-        return CycleShares(motion, waiting, devices)
-    return CycleShares(motion, waiting, devices, cycle.passes, cycle.span.line, cycle.length)
+        return CycleShares(motion, waiting, devices, faults=faults)
+    line = cycle.span.line
+    return CycleShares(motion, waiting, devices, cycle.passes, line, cycle.length, faults)

@@ -68,6 +68,21 @@ def test_the_time_of_a_cycle_is_divided(flyby: Flyby, cell: Path, tmp_path: Path
     assert shares["total_s"] == pytest.approx(shares["motion_s"] + 6.9)
 
 
+def test_a_cycle_with_a_fault_has_no_time(flyby: Flyby, tmp_path: Path) -> None:
+    path = tmp_path / "far.script"
+    path.write_text(
+        "def far():\n  movej([0, -1.57, 1.57, -1.57, -1.57, 0])\n  while True:\n"
+        "    movej([0.5, -1.57, 1.57, -1.57, -1.57, 0])\n    movel(p[9, 0, 0, 0, 0, 0])\n"
+        "    movej([0, -1.57, 1.57, -1.57, -1.57, 0])\n"
+        "    movej([0.2, -1.57, 1.57, -1.57, -1.57, 0])\n  end\nend\n"
+    )
+    words = ("emulate", path, *ROBOT)
+    assert "one pass of the loop at line 3, but for 1 fault: " in flyby(*words).stdout
+    report = json.loads(flyby(*words, "--json").stdout)
+    assert report["cycle_time_s"] is report["cycle"]["total_s"] is None
+    assert report["cycle"]["motion_s"] > 0.0
+
+
 def test_emulate_says_it_in_a_line_a_kind(flyby: Flyby, cell: Path) -> None:
     result = flyby("emulate", cell, *ROBOT)
     assert result.exit_code == 0

@@ -12,6 +12,7 @@ from flyby.core.errors import SourceError
 from flyby.core.program.event import Event, EventAnchor
 from flyby.core.program.move import MoveC, MoveJ, MoveL
 from flyby.core.program.origin import Ownership
+from flyby.core.program.question import QuestionKind
 from flyby.core.program.zone import FINE
 from flyby.core.source.execution.answers import Answers
 from flyby.core.source.reading import ReadOptions
@@ -140,6 +141,8 @@ def test_a_search_ends_where_it_is_told_to():
     assert result.moves[0].target.name == "p" and result.moves[0].zone is FINE
     assert result.moves[1].target.pose.position == pytest.approx((0.5, 0, 0.65))
     assert "taken to find its point at its end" in str(result.notes)
+    (asked,) = (q for q in result.questions if q.kind is QuestionKind.SENSOR)
+    assert (asked.key, asked.type, asked.answered) == ("found", "robtarget", False)
     answer = Answers({"found": ((500.0, 0.0, 580.0), (0.0, 0.0, 1.0, 0.0), (0.0,) * 4, (9e9,) * 6)})
     result = program(f"{search}\nMoveL found,v100,fine,tGun;", answers=answer)
     assert [m.target.pose.position[2] for m in result.moves] == pytest.approx([0.58, 0.58])
@@ -147,6 +150,13 @@ def test_a_search_ends_where_it_is_told_to():
     assert passing.moves[0].target.pose.position[2] == pytest.approx(0.6)
     arc = program("MoveL p,v100,fine,tGun;\nSearchC di1,found,q,r,v20,tGun;").moves[1]
     assert isinstance(arc, MoveC)
+
+
+def test_what_a_search_finds_is_what_its_loop_asks():
+    """The search writes it: the loop that asks for it does not wait for others."""
+    data = "VAR robtarget pp:=[[500,0,700],[0,0,1,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];"
+    loop = "WHILE pp.trans.z>580 DO\nSearchL\\Stop,di1,pp,Offs(pp,0,0,-50),v20,tGun;\nENDWHILE"
+    assert len(program(loop, data).moves) == 3
 
 
 def test_a_search_starts_from_what_its_point_held():

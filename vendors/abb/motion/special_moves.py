@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from ....core.errors import SourceError
 from ....core.program.event import Event
+from ....core.program.question import QuestionKind
 from ..syntax.tree import Invoke, Name
 from ..values.scope import Scope, Variable
 from ..values.types import JOINTTARGET, ROBTARGET, Unknown
@@ -56,7 +57,8 @@ def _search(run: MovesRun, invoke: Invoke, scope: Scope) -> None:
         raise SourceError(f"{invoke.text} needs a datum to put its point in", point.span)
     kind = JOINTTARGET if form.kind == "external" else ROBTARGET
     end = bound.named("ToJointPos" if form.kind == "external" else "ToPoint")
-    answer = run.evaluator.answers.ask(point.span, kind if cell is None else cell.type)
+    asked = kind if cell is None else cell.type
+    answer = run.evaluator.answers.ask(point.span, asked, kind=QuestionKind.SENSOR)
     where = "at its end; answer the point if the program computes with it"
     if answer is not None:
         where = "where the answers say"

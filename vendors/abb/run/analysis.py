@@ -22,6 +22,7 @@ _HALTING = frozenset({"stop", "systemstopaction"})
 _ENDING = frozenset({"exit", "raise"})
 _LEAVING = frozenset({"exitcycle", "errraise", "raisetouser"})
 _STEPPING = words("incr decr add clear bitset bitclear getdataval getsysdata bookerrno")
+_SEARCHING = words("searchl searchc searchextj")
 _WRITING_FUNCTIONS = frozenset({"strtoval", "getnextsym", "readdir"})
 _PLACE_READING = frozenset({"crobt", "cpos", "cjointt", "calcjointt"})
 
@@ -173,7 +174,7 @@ class RapidTree:
             calls = (*functions, self.body(own))
             writes = given.union(self._handed(name, statement.arguments, home))
             return Step(writes=writes, made_of=names, outputs=handed, calls=calls, asks=True)
-        filled = name in _STEPPING or (name in KEPT and KEPT[name].writes)
+        filled = name in (*_STEPPING, *_SEARCHING) or (name in KEPT and KEPT[name].writes)
         filled = filled or (name not in INTERPRETED and name not in KEPT)  # by nobody knows what
         brought = frozenset(_given(written(name, statement.arguments)) if filled else ())
         return Step(

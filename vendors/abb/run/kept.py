@@ -190,6 +190,7 @@ _OUTPUTS: dict[str, tuple[int | str, ...]] = {
     "readrawbytes": (1,),
     "camgetresult": (1,),
     "unpackrawbytes": (2,),
+    **dict.fromkeys(words("searchl searchc searchextj"), (1,)),
 }
 """Where an instruction has data that it writes and others: which of its required arguments, counted
 from 0, and which options it writes."""
