@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from ..door import spelt
 from ..driving.driven_program import DrivenPart
 from ..driving.past_faults import drive
-from ..errors import FaultCause, FlybyError, MotionError, SourceError
+from ..errors import EntryError, FaultCause, FlybyError, MotionError, SourceError
 from ..motion.emulator.controller import Controller
 from ..program.assumed_places import assumed_places
 from ..program.program import Program
@@ -101,11 +101,12 @@ def unreadable(error: FlybyError) -> Finding:
     """The finding that a text cannot be read."""
     span = error.span if isinstance(error, SourceError | MotionError) else None
     message = str(error).removeprefix(f"{span}: ") if span is not None else str(error)
+    to_do = f"say which ({spelt('entry')})" if isinstance(error, EntryError) else "correct the text"
     return Finding(
         CANNOT_READ,
         Severity.ERROR,
         message,
-        "correct the text; nothing else was checked",
+        f"{to_do}; nothing else was checked",
         None,
         span,
     )

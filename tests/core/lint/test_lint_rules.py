@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flyby.core.errors import MotionError, Note, SourceError, Span
+from flyby.core.errors import EntryError, MotionError, Note, SourceError, Span
 from flyby.core.lint.check import (
     CANNOT_DRIVE,
     CANNOT_READ,
@@ -233,4 +233,6 @@ def test_an_unreadable_text_is_a_finding_with_its_place() -> None:
     finding = unreadable(SourceError("ENDPROC expected", span))
     assert (finding.rule, finding.severity) == (CANNOT_READ, Severity.ERROR)
     assert (finding.message, finding.span) == ("ENDPROC expected", span)
+    assert finding.fix.startswith("correct the text")
+    assert unreadable(EntryError("choose", span)).fix.startswith("say which (entry)")
     assert unreadable(MotionError("no target")).message == "no target"

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import pytest
 
-from flyby.core.errors import InputError, SourceError
+from flyby.core.errors import EntryError, InputError, SourceError
 from flyby.core.program.move import Opaque, Wait
 from flyby.core.registry import find_vendor
 from flyby.core.source.execution.answers import Answers, key
@@ -307,8 +307,19 @@ def test_the_entry(krl):
     assert visited(krl(src=src, entry="FIRST")) == [1]
     with pytest.raises(SourceError, match=r"there is no DEF 'third'"):
         krl(src=src, entry="third")
-    program = krl(src=src.replace("demo", "last"))
-    assert visited(program) == [1] and "first" in program.notes[0].message
+
+
+def test_the_entry_of_a_file_with_no_def_of_its_name(krl):
+    """The one that no other calls, wherever it stands; where several may be meant, none."""
+    src = f"DEF first( )\n{INIT}{P[1]}\nEND\nDEF last( )\n{INIT}{P[2]}\nEND\nDEF idle( )\nEND"
+    with pytest.raises(EntryError, match=r"one of first \(1 move\), last \(1 move\), idle"):
+        krl(src=src)
+    assert visited(krl(src=src, entry="last")) == [2]
+    calls = src.replace("DEF last( )\n", "DEF last( )\nfirst()\n")
+    program = krl(src=calls)
+    assert program.name == "last" and visited(program) == [1, 2]
+    assert "no DEF is called like the file; last, which no other calls" in program.notes[0].message
+    assert krl(src=src.replace("last( )", "last(a:IN)")).name == "first"
 
 
 def test_an_entry_without_a_caller(krl):

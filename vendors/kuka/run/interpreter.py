@@ -200,6 +200,15 @@ class Interpreter:
             if r.returns is None
         )
 
+    def roots(self, routines: Sequence[Routine]) -> list[Routine]:
+        """Of the routines those that move the robot, and that none of the others calls."""
+        moving = [r for r in routines if self._analysis.moves(r.body)]
+        return [
+            r
+            for r in moving
+            if not any(id(r.body) in self._analysis.blocks_in(o.body) for o in moving if o is not r)
+        ]
+
     def run(self, entry: Routine, arguments: tuple[Expression | None, ...] = ()) -> None:
         """Execute a routine to its end; parameters that are not given have no values."""
         call = Call(entry.span, entry.name, entry.text, arguments)

@@ -3,8 +3,9 @@
 The text is parsed (`parser`) and executed (`interpreter`) from the entry routine on, as far as its
 course follows from the text itself. What is decided here, and where a controller may differ:
 
-- The entry is the ``DEF`` that is called like its file, else the first one without arguments. If it
-  takes arguments, they have no values, as on a controller that is sent there by hand.
+- The entry is the ``DEF`` that is called like its file, which a controller selects; else the only
+  one that moves the robot and that no other calls. If it takes arguments, they have no values, as
+  on a controller that is sent there by hand.
 - Branches and loops that only the running controller decides, and loops that nothing in the program
   ends, follow the rules of `core.source.execution.flow`. Clocks and inputs are not known even after
   they were set.
@@ -30,7 +31,7 @@ from __future__ import annotations
 
 import re
 
-from ....core.errors import Note, SourceError, Span, UnknownNameError
+from ....core.errors import EntryError, Note, SourceError, Span, UnknownNameError
 from ....core.program.entry_point import ALL, entry_call, listed, without_caller
 from ....core.program.program import Program
 from ....core.source.collection import collection_paused
@@ -67,17 +68,17 @@ def read_sources(files: Files, main: str, options: ReadOptions) -> Program:
         if name == ALL and ALL not in library.main.routines:
             points = Interpreter(library, options).entry_points(library.main_unit.routines)
             return Program((), library.main.stem, entries=points)
+        run = Interpreter(library, options)
         try:
-            entry, notes = _entry(library, name, start, given is not None)
+            entry, notes = _entry(library, run, name, start, given is not None)
         except UnknownNameError as error:
-            points = Interpreter(library, options).entry_points(library.main_unit.routines)
+            points = run.entry_points(library.main_unit.routines)
             raise SourceError(
                 f"there is no DEF '{error.name}': choose as the entry one of {listed(points)}; all "
                 "drives each of them",
                 start,
             ) from None
         arguments = _arguments(library, entry, given)
-        run = Interpreter(library, options)
         try:
             run.run(entry, arguments)
         except RecursionError:
@@ -128,12 +129,13 @@ def _arguments(library: Library, entry: Routine, text: str | None) -> tuple[Expr
 
 
 def _entry(
-    library: Library, wanted: str | None, start: Span, given: bool
+    library: Library, run: Interpreter, wanted: str | None, start: Span, given: bool
 ) -> tuple[Routine, tuple[Note, ...]]:
     """The routine to run.
 
     Raises:
         UnknownNameError: there is none of that name.
+        EntryError: none is called like the file, and several may be meant.
         SourceError: the file holds no program.
     """
     routines = library.main_unit.routines
@@ -155,10 +157,19 @@ def _entry(
             "the file holds functions (DEFFCT) and no DEF: read a program that calls them",
             routines[0].span,
         )
-    first = next((r for r in selectable if not r.parameters), selectable[0])
     if len(routines) == 1:
-        return first, _open_arguments(first)
-    message = f"no DEF is called like the file; the first one, {first.text}, is read"
+        return routines[0], _open_arguments(routines[0])
+    roots = run.roots(selectable) or selectable[:1]
+    roots = [r for r in roots if not r.parameters] or roots
+    if len(roots) > 1:
+        raise EntryError(
+            "no DEF is called like the file, and none of those that move the robot calls the "
+            f"others: choose as the entry one of {listed(run.entry_points(routines))}; all drives "
+            "each of them",
+            start,
+        )
+    (first,) = roots
+    message = f"no DEF is called like the file; {first.text}, which no other calls, is read"
     return first, (Note(message, span=first.span), *_open_arguments(first))
 
 
