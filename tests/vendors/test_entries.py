@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -100,6 +101,20 @@ def test_arguments_are_given_as_the_language_writes_them(vendor: str) -> None:
     program = read(vendor, f"Pick(1, {TARGETS[vendor]})")
     assert len(program.moves) == 2
     assert len(read(vendor, "Home").moves) == 1
+
+
+@pytest.mark.parametrize("vendor", TEXTS)
+def test_arguments_are_called_as_they_are_declared(vendor: str) -> None:
+    file, text = TEXTS[vendor]
+    named = re.sub(r"\bp\b(?!\[)", "pGoal", re.sub(r"\bn\b", "nPart", text))
+    reader = find_vendor(vendor).reader
+    assert reader is not None
+    program = reader.read(named, file, ReadOptions(entry="Pick", answers=Answers(goes_on=True)))
+    assert program.open_arguments == ("nPart", "pGoal")
+    assert any("its arguments (nPart, pGoal) have no values" in n.message for n in program.notes)
+    assert not any("pgoal" in str(note) for note in program.notes)
+    assert any(q.key == "pGoal" for q in program.questions)
+    assert "pGoal" in program.moves[0].open and "pgoal" not in program.moves[0].open
 
 
 @pytest.mark.parametrize("vendor", TEXTS)

@@ -316,7 +316,7 @@ def task_of(
                 routine.text,
                 file.name,
                 hooks.get(routine.name, ""),
-                tuple(p.name for p in routine.parameters if not p.optional),
+                tuple(p.text for p in routine.parameters if not p.optional),
                 task.moving.get(id(routine), 0),
             )
             if routine.name == stated.casefold():

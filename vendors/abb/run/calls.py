@@ -63,11 +63,11 @@ def leave_open(evaluator: Evaluator, routine: Routine, scope: Scope) -> None:
     for parameter in needed_by(routine):
         span = parameter.span
         type_ = evaluator.data.type(parameter.type, scope.home, span)
-        value = evaluator.answers.ask_by(parameter.name, span, type_, (), QuestionKind.DATUM)
+        value = evaluator.answers.ask_by(parameter.text, span, type_, (), QuestionKind.DATUM)
         if value is None:
-            reason = f"the argument {parameter.name} of {routine.text}"
-            value = Unknown(reason, span, parameter.name, default_of(type_))
-        scope.cells[parameter.name] = Variable(parameter.name, type_, value=value)
+            reason = f"the argument {parameter.text} of {routine.text}"
+            value = Unknown(reason, span, parameter.text, default_of(type_))
+        scope.cells[parameter.name] = Variable(parameter.text, type_, value=value)
     _leave_absent(evaluator, routine, scope)
 
 
@@ -77,7 +77,7 @@ def _leave_absent(evaluator: Evaluator, routine: Routine, scope: Scope) -> None:
         if parameter.name not in scope.cells:
             type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
             scope.cells[parameter.name] = Variable(
-                parameter.name, type_, value=False, present=False
+                parameter.text, type_, value=False, present=False
             )
 
 
@@ -111,7 +111,7 @@ def _matched(
     for parameter, argument in zip(required, values, strict=True):
         if argument.parameter not in (None, parameter.name):
             raise SourceError(
-                f"this argument of {routine.text} is {parameter.name}, not {argument.parameter}",
+                f"this argument of {routine.text} is {parameter.text}, not {argument.parameter}",
                 argument.span,
             )
     given = {a.option: a for a in arguments if a.option is not None}
@@ -129,15 +129,15 @@ def _parameter(
     expression = argument.value
     if expression is None:
         if parameter.type != "switch":
-            raise SourceError(f"\\{parameter.name} needs a value", argument.span)
-        return Variable(parameter.name, type_, value=True)
+            raise SourceError(f"\\{parameter.text} needs a value", argument.span)
+        return Variable(parameter.text, type_, value=True)
     if parameter.mode != "in" or parameter.dimensions:
         return _referred(evaluator, parameter, type_, expression, caller)
     found = evaluator.locate(expression, caller, asking=not isinstance(type_, Foreign))
     evaluator.answers.used_as(expression, found.value, type_)
     if find_unknown(found.value) is None:
-        evaluator.check(found.value, type_, f"parameter {parameter.name}", expression.span)
-    name = found.cell.name if found.cell is not None else parameter.name
+        evaluator.check(found.value, type_, f"parameter {parameter.text}", expression.span)
+    name = found.cell.name if found.cell is not None else parameter.text
     return Variable(
         name,
         type_,
@@ -155,7 +155,7 @@ def _referred(
         if parameter.dimensions and parameter.mode == "in":
             return _anonymous(evaluator, parameter, type_, expression, caller)
         raise SourceError(
-            f"parameter {parameter.name} is passed by reference: it takes a datum here, and no "
+            f"parameter {parameter.text} is passed by reference: it takes a datum here, and no "
             "computed value",
             expression.span,
         )
@@ -167,7 +167,7 @@ def _referred(
     evaluator.settle(cell)
     if parameter.dimensions not in (0, len(cell.dimensions)) and cell.value is not None:
         raise SourceError(
-            f"parameter {parameter.name} is an array of {parameter.dimensions} dimensions, and "
+            f"parameter {parameter.text} is an array of {parameter.dimensions} dimensions, and "
             f"{cell.name} has {len(cell.dimensions)}",
             expression.span,
         )
@@ -186,4 +186,4 @@ def _anonymous(
     while len(sizes) < parameter.dimensions and isinstance(inner, tuple):
         sizes.append(len(inner))
         inner = inner[0]
-    return Variable(parameter.name, type_, value=value, dimensions=tuple(sizes))
+    return Variable(parameter.text, type_, value=value, dimensions=tuple(sizes))

@@ -31,7 +31,7 @@ def entry_points(
     """
     counted = [(r, count_moves(data, r)) for module in own for r in module.routines]
     return tuple(
-        EntryPoint(r.text, tuple(p.name for p in needed_by(r)), moves, r is begun)
+        EntryPoint(r.text, tuple(p.text for p in needed_by(r)), moves, r is begun)
         for r, moves in counted
         if r.kind == "proc" or (r.kind == "func" and moves)
     )
@@ -80,7 +80,7 @@ def choose_entry(
     found = _routine(data, own, entry or MAIN, where, fetch=entry is not None)
     if found is not None:
         if not _startable(found) and not arguments:
-            needed = [p.name for p in needed_by(found)]
+            needed = [p.text for p in needed_by(found)]
             if goes_on:
                 return found, (Note(without_caller(found.text, needed), span=found.span),)
             names = ", ".join(needed)

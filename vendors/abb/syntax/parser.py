@@ -307,7 +307,7 @@ def _parameter(cursor: Cursor, group: int, before: list[Parameter]) -> Parameter
     text = cursor.name("the name of a parameter")
     dimensions = _open_dimensions(cursor)
     span = cursor.span_from(start)
-    return Parameter(span, mode, type_name, text.lower(), dimensions, optional, group)
+    return Parameter(span, mode, type_name, text.lower(), text, dimensions, optional, group)
 
 
 def _open_dimensions(cursor: Cursor) -> int:

@@ -214,6 +214,8 @@ class Parameter(Node):
     Args:
         mode: ``in``, ``inout``, ``var``, ``pers``.
         type: lower-case name of the type; ``switch`` for a switch.
+        name: lower case.
+        text: the name as it is declared.
         dimensions: number of them, 0 if it is no array.
         optional: written with ``\\``.
         group: parameters of one group exclude each other.
@@ -222,6 +224,7 @@ class Parameter(Node):
     mode: str
     type: str
     name: str
+    text: str
     dimensions: int
     optional: bool
     group: int

@@ -192,7 +192,7 @@ class Interpreter:
         return tuple(
             EntryPoint(
                 r.text,
-                tuple(p.name for p in r.parameters),
+                tuple(p.text for p in r.parameters),
                 self._analysis.move_count(r.body),
                 r is begun,
             )

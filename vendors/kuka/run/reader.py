@@ -177,5 +177,5 @@ def _open_arguments(entry: Routine) -> tuple[Note, ...]:
     """What is said of an entry that nobody calls with arguments."""
     if not entry.parameters:
         return ()
-    names = (parameter.name for parameter in entry.parameters)
+    names = (parameter.text for parameter in entry.parameters)
     return (Note(without_caller(entry.text, names), span=entry.span),)

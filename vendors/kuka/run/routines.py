@@ -103,7 +103,7 @@ class Routines:
         back: list[tuple[Variable, Name, Path]] = []
         for index, parameter in enumerate(routine.parameters):
             argument = call.arguments[index] if index < len(call.arguments) else None
-            cell = Variable(parameter.name)
+            cell = Variable(parameter.text)
             if argument is not None:
                 cell.value = copied(self._evaluator.evaluate(argument, caller))
             scope.cells[parameter.name] = cell

@@ -124,13 +124,13 @@ def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
     while not cursor.accept(")"):
         if parameters:
             cursor.expect(",", "between the parameters")
-        name = cursor.word("the name of a parameter").lower()
+        text = cursor.word("the name of a parameter")
         if cursor.kind == "[":
             parse_indices(cursor)
         by_reference = True
         if cursor.accept(":"):
             by_reference = cursor.word("IN or OUT").lower() != "in"
-        parameters.append(Parameter(name, by_reference))
+        parameters.append(Parameter(text.lower(), text, by_reference))
     return tuple(parameters)
 
 

@@ -301,9 +301,15 @@ class EnumDefinition(Statement):
 
 @quick(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a routine: ``name:IN`` or ``name:OUT``; lower case."""
+    """A parameter of a routine: ``name:IN`` or ``name:OUT``.
+
+    Args:
+        name: lower case.
+        text: as it is declared.
+    """
 
     name: str
+    text: str
     by_reference: bool
 
 
