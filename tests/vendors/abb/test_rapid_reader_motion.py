@@ -9,7 +9,7 @@ import pytest
 
 from flyby.core.errors import SourceError
 from flyby.core.program.arc_orientation import ArcOrientation
-from flyby.core.program.move import MoveC, MoveJ, MoveL
+from flyby.core.program.move import MoveC, MoveJ, MoveL, Wait
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
 from flyby.core.program.zone import FINE, Radius
@@ -94,6 +94,23 @@ def test_options_override_speed_and_zone():
     timed = move("MoveL p,v1000\\T:=2.5,z50\\Inpos:=inpos50,tool0;")
     assert timed.speed.duration == 2.5 and timed.zone == FINE
     assert move("MoveL p,v1000\\V:=1000,z50\\Z:=50,tool0;").speed.name == "v1000"
+
+
+@pytest.mark.parametrize(
+    ("point", "seconds"),
+    [
+        ("inpos50", []),
+        ("stoptime0_5", [0.5]),
+        ("fllwtime1_5", [1.5]),
+        ('[stoptime,FALSE,[0,0,0,0],0.8,0,"",0,0]', [0.8]),
+        ('[inpos,TRUE,[25,40,0.1,5],0,0,"",0,0]', [0.1]),
+    ],
+)
+def test_the_robot_stands_at_a_stop_point(point, seconds):
+    read = program(f"MoveL p,v100,z50\\Inpos:={point},tool0;\nMoveL q,v100,fine,tool0;")
+    assert [s.duration for s in read.statements if isinstance(s, Wait)] == seconds
+    assert isinstance(read.statements[0], MoveL) and read.moves[0].zone == FINE
+    assert not read.questions
 
 
 def test_tools_and_work_objects():
@@ -207,6 +224,7 @@ def test_program_displacement():
         ("MoveL p,z10,v100,tool0;", "the speed of MoveL: z10 is a zonedata, a speeddata is"),
         ("MoveL p,[0,500,100,100],z10,tool0;", "v_tcp must be above zero, not 0 mm/s"),
         ("MoveL p,[-5,500,100,100],z10,tool0;", "v_tcp must be above zero, not -5 mm/s"),
+        ("MoveL p,v9,[FALSE,-5,5,5,1,5,1],tool0;", "pzone_tcp must be zero or more, not -5"),
         ("MoveL p,v100\\V:=0,z10,tool0;", "\\V must be above zero, not 0 mm/s"),
         ("MoveL p,v100\\T:=-1,z10,tool0;", "\\T must be above zero, not -1 s"),
         ("MoveL p,v100,z10\\Z:=-1,tool0;", "zero or more"),

@@ -122,7 +122,8 @@ class RobotFunctions:
                 return self.position.jointtarget_at(target, tool, frame)
             except FlybyError as error:
                 number = NUMBERS[OUT_OF_REACH]
-                raise ProgramError(f"{call.text}: {error}", call.span, number) from None
+                said = error.message if isinstance(error, MotionError) else str(error)
+                raise ProgramError(f"{call.text}: {said}", call.span, number) from None
 
         return self._converted(evaluator, call, scope, ROBTARGET, ask)
 

@@ -12,14 +12,16 @@ from dataclasses import dataclass, replace
 from ....core.errors import SourceError
 from ....core.program.arc_orientation import ArcOrientation
 from ....core.program.event import Event
-from ....core.program.move import Move, MoveC, MoveJ, MoveL
+from ....core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from ....core.program.target import JointTarget, PoseTarget
 from ....core.source.execution.provenance import MovePart
 from ....core.source.execution.transcript import MoveParts
 from ..syntax.tree import Invoke
 from ..values.arguments import Bound, bind
+from ..values.predefined import FOLLOW_TIME, STOP_TIME
 from ..values.records import Record
 from ..values.scope import Scope
+from ..values.types import find_unknown
 from .move_arguments import MoveArguments, MovesRun, NotDriven
 
 _COMMON_OPTIONS = ("conc", "v", "t", "z", "inpos", "wobj", "tload", "corr", "id")
@@ -151,7 +153,24 @@ def drive(
             reads.by_move(source, run.out.move_index)
     run.emit_move(move, parts)
     run.position.moved(move, parts.statement, record)
+    stands = _stop_time(run, bound, scope)
+    if stands > 0.0:
+        run.out.emit(Wait(stands, bound.option_spans["inpos"]))
     return record
+
+
+def _stop_time(run: MovesRun, bound: Bound, scope: Scope) -> float:
+    """s that a stop point (``\\Inpos``) lets the robot stand, where that is known."""
+    point = bound.options.get("inpos")  # of some processes a switch
+    if point is None:
+        return 0.0
+    value = run.evaluator.evaluate(point, scope)
+    if not isinstance(value, tuple) or find_unknown(value) is not None:
+        return 0.0
+    kind, _, inside, stop, follow, *_ = value
+    least = inside[2] if isinstance(inside, tuple) else 0.0
+    stands = {STOP_TIME: stop, FOLLOW_TIME: follow}.get(kind, least)
+    return stands if isinstance(stands, float) else 0.0
 
 
 def _plain(run: MovesRun, invoke: Invoke, scope: Scope) -> None:

@@ -2,7 +2,8 @@
 
 The numbers are those of the "RAPID Reference Manual", data types speeddata, zonedata, tooldata,
 wobjdata and loaddata, as three public tools carry them alike (RobotComponents; rpiRobotics
-abb_motion_program_exec; a RAPID generator that cites the manual).
+abb_motion_program_exec; a RAPID generator that cites the manual). Stop points have the times of
+their names.
 
 RAPID does not tell upper from lower case: every table has lower-case keys, and the look-ups
 take a name in any case.
@@ -67,10 +68,30 @@ ZONES: Mapping[str, Record] = MappingProxyType(
 """name → ``[finep, pzone_tcp, pzone_ori, pzone_eax, zone_ori, zone_leax, zone_reax]`` in mm and
 deg."""
 
+STOP_TIME, FOLLOW_TIME = 2.0, 3.0
+"""Types of stop points at which the robot stands for a time, beside those by position (1)."""
+
+
+def _stop(kind: float, part: float, stop: float = 0.0, follow: float = 0.0) -> Record:
+    inside = (part, part, 0.0, 2.0) if part else (0.0,) * 4
+    return kind, kind == 1.0, inside, stop, follow, "", 0.0, 0.0
+
+
+_TIMES = {"0_5": 0.5, "1_0": 1.0, "1_5": 1.5}
+STOPS: Mapping[str, Record] = MappingProxyType(
+    {
+        **{f"inpos{part}": _stop(1.0, part) for part in (20, 50, 100)},
+        **{f"stoptime{name}": _stop(STOP_TIME, 0.0, stop=s) for name, s in _TIMES.items()},
+        **{f"fllwtime{name}": _stop(FOLLOW_TIME, 0.0, follow=s) for name, s in _TIMES.items()},
+    }
+)
+"""name → ``[type, progsynch, inpos, stoptime, followtime, signal, relation, checkvalue]``, s."""
+
 RECORDS: Mapping[str, Mapping[str, Record]] = MappingProxyType(
     {
         "speeddata": MappingProxyType({**SPEEDS, **_EXTERNAL}),
         "zonedata": ZONES,
+        "stoppointdata": STOPS,
         "tooldata": MappingProxyType({FLANGE.name: tool_record(FLANGE)}),
         "wobjdata": MappingProxyType({WORLD.name: work_object_record(WORLD)}),
         "loaddata": MappingProxyType({"load0": LOAD0}),
@@ -99,6 +120,7 @@ USER_CLOCK = "clock1"
 CONSTANTS: Mapping[str, tuple[Type, Value]] = MappingProxyType(
     {
         **_numbers(pi=3.141592653589793, low=0, high=1, edge=2, eof_num=9.998e36, eof_bin=-1),
+        **_counted("inpos stoptime fllwtime", 1),
         **_counted("run_undef run_cont_cycle run_instr_fwd run_instr_bwd run_sim run_step_move"),
         **_counted("op_undef op_auto op_man_prog op_man_test"),
         **_counted("resunkwn resok resabort resretry resignore rescancel resyes resno"),

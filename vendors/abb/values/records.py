@@ -165,6 +165,9 @@ def check_speed(record: Record, tcp: float | None, duration: float | None) -> No
             raise InputError(f"{name} must be above zero, not {value:g} {unit}")
 
 
+_OF_ZONES = ("pzone_tcp", "pzone_ori", "pzone_eax", "zone_ori", "zone_leax", "zone_reax")
+
+
 def zone_value(record: Record, name: str | None = None) -> Zone:
     """``[finep, pzone_tcp, pzone_ori, pzone_eax, zone_ori, zone_leax, zone_reax]``.
 
@@ -173,6 +176,9 @@ def zone_value(record: Record, name: str | None = None) -> Zone:
     finep, tcp, reorientation, external, angle, linear, angular = record
     if finep:
         return FINE
+    for component, number in zip(_OF_ZONES, record[1:], strict=True):
+        if number < 0:
+            raise InputError(f"{component} must be zero or more, not {number:g}")
     return Radius(
         tcp=tcp / PER_METRE,
         reorientation=reorientation / PER_METRE,

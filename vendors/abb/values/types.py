@@ -120,6 +120,18 @@ ZONEDATA = _record(
     zone_leax=NUM,
     zone_reax=NUM,
 )
+INPOSDATA = _numbers("inposdata", "position speed mintime maxtime")
+STOPPOINTDATA = _record(
+    "stoppointdata",
+    type=NUM,
+    progsynch=BOOL,
+    inpos=INPOSDATA,
+    stoptime=NUM,
+    followtime=NUM,
+    signal=STRING,
+    relation=NUM,
+    checkvalue=NUM,
+)
 LOADDATA = _record("loaddata", mass=NUM, cog=POS, aom=ORIENT, ix=NUM, iy=NUM, iz=NUM)
 TOOLDATA = _record("tooldata", robhold=BOOL, tframe=POSE, tload=LOADDATA)
 WOBJDATA = _record("wobjdata", robhold=BOOL, ufprog=BOOL, ufmec=STRING, uframe=POSE, oframe=POSE)
@@ -130,6 +142,7 @@ BUILT_IN: Mapping[str, Type] = MappingProxyType(
         for t in (
             *(NUM, DNUM, BOOL, STRING, POS, ORIENT, POSE, CONFDATA, EXTJOINT, ROBJOINT),
             *(ROBTARGET, JOINTTARGET, SPEEDDATA, ZONEDATA, LOADDATA, TOOLDATA, WOBJDATA),
+            *(INPOSDATA, STOPPOINTDATA),
         )
     }
     # Types that are another one under a new name.
