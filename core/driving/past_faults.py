@@ -23,8 +23,9 @@ _OF_PLACES = (
 ENOUGH = 5
 """Faults after which no more are counted to tell what drives a program better."""
 _AHEAD = 4
-"""Moves looked at behind a fault at first: twice as many each time that none is found, so that
-looking takes no more than a few times what driving does, however many faults there are."""
+"""Moves looked at behind a fault at first, or as many as came before it: twice as many each time
+that none is found, so that looking takes little more than driving does, however many faults there
+are."""
 
 
 def drive(
@@ -160,7 +161,8 @@ class _Drive:
 
     def _furthest(self, first: int, at: JointTarget) -> tuple[int, MotionError | None]:
         """Up to which move the robot comes from ``first`` on, and why no further."""
-        ahead, count = _AHEAD, len(self._program.moves)
+        last = [-1, *(fault.move for fault in self._faults[-2:])]
+        ahead, count = max(_AHEAD, last[-1] - last[-2]), len(self._program.moves)
         while True:
             stop = min(first + ahead, count)
             try:
