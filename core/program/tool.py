@@ -35,7 +35,10 @@ class Load:
     def __post_init__(self) -> None:
         numbers = (self.mass, *self.centre, *self.inertia, *self.axes)
         if not all(map(math.isfinite, numbers)) or self.mass < 0 or min(self.inertia) < 0:
-            raise InputError(f"a load needs finite numbers, mass and inertia not negative: {self}")
+            raise InputError(
+                "a load needs finite numbers, mass and inertia not negative: mass "
+                f"{self.mass:g} kg, inertia {', '.join(f'{part:g}' for part in self.inertia)} kgm²"
+            )
 
     @classmethod
     def of_body(cls, body: Inertia, name: str | None = None) -> Load:

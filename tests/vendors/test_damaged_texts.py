@@ -86,7 +86,7 @@ def test_a_damaged_motion_goes_where_nobody_knows(language) -> None:
 
 MORE_MOTIONS = {
     "abb": ("GlueL pA v100, glue1, fine, tool0;", "MoveExtJ jA v1;", "ArcLStart pA v100, s, w;"),
-    "kuka": ("SPTP_REL {A1 1 A2 2}", "SLIN XP1 WITH $VEL=2 {"),
+    "kuka": ("SPTP_REL {A1 1 A2 2}", "SLIN XP1 WITH $VEL=2 {", "SPL XP1"),
     "ur": ("optimovel(p[0,0,0", "servoj([0,0,0,0,0,0]"),
 }
 """Motions that have other words than the everyday ones."""

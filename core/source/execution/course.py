@@ -14,6 +14,7 @@ from ...errors import InputError, Note, SourceError, Span
 from ...program.cycle import Cycle
 from ...program.question import Answer, Question, QuestionKind
 from .answers import TABLES, Answers, Fields, key, placed, stands_at, stands_in
+from .scopes import alike
 from .sections import Sections
 from .streams import Stream
 
@@ -21,6 +22,8 @@ STRUCTURE = "structure, with what is read of it here"
 """What an answer is of which no more is known than the components that are used."""
 _LONGEST_KEY = 80
 """Characters of a statement that is a key as it stands."""
+_ALIKE = 0.85
+"""Share of its letters in which a name that was asked for is like one that nobody asked for."""
 
 NOT_AT_HAND = "it is in no file at hand"
 """Why a routine cannot be carried out."""
@@ -332,7 +335,7 @@ class Course:
             for note, count in self._decided.values()
         ]
         unasked = [
-            f"{name} in [{table}]"
+            f"{name} in [{table}]{self._meant(table, name)}"
             for table in TABLES
             for name in self.answers.names(table)
             if (table, name) not in self._asked
@@ -345,6 +348,13 @@ class Course:
                 )
             )
         return tuple(told)
+
+    def _meant(self, table: str, name: str) -> str:
+        """What is asked for and not answered, if that is a name which is nearly written so."""
+        asked = self._questions.items() if table == "values" else ()
+        known = {key: one.key for (of, key), one in asked if of == table and not one.answered}
+        near = alike(name, tuple(known), 1, _ALIKE)
+        return f" (did you mean {known[near[0]]}?)" if near else ""
 
     def _at(self, table: str, span: Span) -> int | None:
         """The entry for a place."""

@@ -20,7 +20,9 @@ from .instructions import kept
 
 NATIVE = frozenset({"bas"})
 """Routines of KUKA's own that are carried out natively."""
-_MOVING = words("ptp lin circ ptp_rel lin_rel circ_rel sptp slin scirc sptp_rel slin_rel scirc_rel")
+_MOVING = words(
+    "ptp lin circ ptp_rel lin_rel circ_rel spl sptp slin scirc spl_rel sptp_rel slin_rel scirc_rel"
+)
 _LOOPS = (tree.For, tree.While, tree.Repeat, tree.Loop)
 
 

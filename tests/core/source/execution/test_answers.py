@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from flyby.core.errors import InputError, Span, UnknownNameError
 from flyby.core.source.execution.answers import Answers, key
 from flyby.core.source.execution.answers_file import load_answers
-from flyby.core.source.execution.course import Course
+from flyby.core.source.execution.course import About, Course
 
 
 def span(line: int = 1, file: str = "cell/main.mod") -> Span:
@@ -58,6 +58,11 @@ def test_a_file_of_answers_is_read(tmp_path: Path) -> None:
         f"{tmp_path / 'answers.toml'}: the program, as far as it ran, did not ask for $in[3] in "
         "[values], count in [values], place in [values]"
     )
+    course.value("diCount", About(span(30)))
+    course.value("Counts", About(span(31)))
+    (unasked,) = course.notes()
+    assert "count in [values] (did you mean Counts?), place in [values]" in unasked.message
+    assert "diCount" not in unasked.message
     for one in ("$IN[3]", "Count", "place"):
         course.value(one)
     assert course.notes() == ()
