@@ -33,7 +33,7 @@ def configurations() -> Any:
     """The option that says what becomes of configuration data that contradict their target."""
     return choice(
         None,
-        "Configuration data that contradict their target: refused (exact, the default), or given "
+        "Configuration data that contradict their target: a fault (exact, the default), or given "
         "up for the solution nearest to where the robot comes from.",
         ("exact", "nearest"),
     )
