@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..display import counted, in_line
 from ..door import spelt
 from ..errors import FlybyError, Note, OptionError, SourceError, Span
+from ..program.move import Opaque, Wait
 from ..program.question import QuestionKind
 from .execution.answers import Answers, stands_in
 from .execution.course import AnswerError
@@ -138,11 +139,23 @@ def read_with(
         read: a vendor's function from files to a program.
     """
     program = _to_known_places(files, main, options, read)
-    odd = filter(
-        None, (told(file) for file in files.values() for told in (wide_file, stray_return))
-    )
+    told = (say(file) for file in files.values() for say in (wide_file, stray_return))
+    odd = [note for note in told if note is not None]
+    if any(note.span is not None and note.span.file != main for note in odd):
+        own = _files_of(program, main)
+        odd = [note for note in odd if note.span is None or note.span.file in own]
     reading = Reading(dict(files), main, options, read)
     return replace(program, notes=(*program.notes, *odd), reading=reading)
+
+
+def _files_of(program: Program, main: str) -> frozenset[str]:
+    """Names of the files whose statements or numbers are in a program; others lie beside it."""
+    spans = [s.span if isinstance(s, Wait | Opaque) else s.statement for s in program.statements]
+    origins = [move.origin for move in program.moves if move.origin is not None]
+    for origin in origins:
+        for part in (origin.target, origin.speed, origin.zone):
+            spans += part.numbers
+    return frozenset((main, *(span.file for span in spans if span is not None)))
 
 
 def _to_known_places(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import pytest
 
@@ -84,6 +85,18 @@ def test_nothing_else_ends_a_comment(language, mark, end) -> None:
     assert lines(program) == [3, 5 + mark.count("\r")]
     told = [note for note in program.notes if "carriage return" in note.message]
     assert [note.span.line for note in told] == ([4] if "\r" in mark else [])
+
+
+def test_of_files_beside_a_program_nothing_is_said(tmp_path) -> None:
+    """Only of those that it is made of."""
+    joints = "[[9,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]]"
+    for name in ("one", "other"):
+        data = f"MODULE {name}\nCONST jointtarget j{name}:={joints};\n! x\ry\nENDMODULE\n"
+        (tmp_path / f"{name}.mod").write_bytes(data.encode())
+    (tmp_path / "a.mod").write_text("\n".join(RAPID.lines).replace(joints, "jone"))
+    program = find_vendor("abb").read_file(tmp_path / "a.mod", robot=find_robot(RAPID.robot))
+    told = [note.span.file for note in program.notes if "carriage return" in note.message]
+    assert [Path(file).name for file in told] == ["one.mod"]
 
 
 @LANGUAGES
