@@ -2,7 +2,8 @@
 
 A controller that has not planned the next move by the time the robot comes to a zone stops it at
 the point (ABB's *corner path failure*). No program says where that happens, but the log does: the
-TCP all but stands still near the point, where the emulation passes at speed.
+TCP all but stands still near the point, where the emulation passes at speed. No fine point waits
+there for the servos to be in position, so that it takes what commands need to come to rest alone.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from ..core.arrays import FloatArray
 from ..core.motion.emulator.run import Run
 from ..core.program.program import Program
 from ..core.program.tool import FLANGE
-from ..core.program.zone import FINE, Radius
+from ..core.program.zone import Fine, Radius
 from ..core.robot.model import Robot
 from .alignment import Alignment
 from .residuals import Residuals
@@ -72,10 +73,10 @@ def _places(driven: Run, alignment: Alignment, found: Residuals) -> FloatArray:
 
 
 def with_stops(program: Program, moves: tuple[int, ...]) -> Program:
-    """A program that stops at the end of some of its moves."""
+    """A program that stops at the end of some of its moves, as no program says."""
     return program.with_moves(
         tuple(
-            replace(move, zone=FINE) if index in moves else move
+            replace(move, zone=Fine(programmed=False)) if index in moves else move
             for index, move in enumerate(program.moves)
         )
     )

@@ -18,7 +18,14 @@ def _check(owner: str, **values: float) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Fine:
-    """A stop point: the robot comes to rest at the waypoint."""
+    """A stop point: the robot comes to rest at the waypoint.
+
+    Args:
+        programmed: whether its controller waits there until servos are in position, as at all that
+            programs say; not where it stops as the next move is not planned in time.
+    """
+
+    programmed: bool = True
 
 
 @dataclass(frozen=True, slots=True)

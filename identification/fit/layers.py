@@ -24,14 +24,14 @@ from .runs import PreparedRun
 
 SERVO_LISTS = ("servo.friction_rad", "servo.drag_s", "elasticity.lag_s")
 """Figures that each joint's servo has; zero where a model states none."""
-SETTLING = "time.settling_s"
+REST = "servo.rest_s"
 
 
 def servo_parameters(model: MotionModel, robot: Robot) -> list[str]:
     """What is fitted of one robot's servos, of all its joints alike."""
     keys = [f"{name}[{joint}]" for name in SERVO_LISTS for joint in range(robot.arm_size)]
     texts = [f"{key} = 0" if value_of(model, key) is None else key for key in keys]
-    return [*texts, *([SETTLING] if model.settling is not None else [])]
+    return [*texts, REST]
 
 
 def fit_usual(

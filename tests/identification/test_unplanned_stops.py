@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,7 +12,7 @@ from hypothesis import strategies as st
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.program import Program
-from flyby.core.program.zone import FINE, Radius
+from flyby.core.program.zone import FINE, Fine, Radius
 from flyby.core.registry import find_vendor
 from flyby.identification.logs.cleaning import clean_samples
 from flyby.identification.prediction import predict
@@ -38,7 +40,7 @@ def test_a_stop_that_no_program_says_is_emulated(seed: int, radius: float) -> No
     log = logged(with_stops(told, (0,)), seed)
     found = predict(CONTROLLER, "stopped", told, log)
     assert found.stops == (0,)
-    assert found.driven.program.moves[0].zone == FINE
+    assert found.driven.program.moves[0].zone == Fine(programmed=False)
     assert found.figures.path_max < 1e-4
     assert found.figures.cycle_time_ratio == pytest.approx(1.0, abs=0.01)
     assert "stops at the end of move 1," in found.log.notes[-1]
@@ -49,7 +51,7 @@ def test_a_stop_that_no_program_says_is_emulated(seed: int, radius: float) -> No
 def test_what_passes_is_no_stop(seed: int, leg: float) -> None:
     told = program(leg)
     assert predict(CONTROLLER, "passed", told, logged(told, seed)).stops == ()
-    stopping = with_stops(told, (0,))
+    stopping = told.with_moves(tuple(replace(move, zone=FINE) for move in told.moves))
     assert predict(CONTROLLER, "said", stopping, logged(stopping, seed)).stops == ()
 
 

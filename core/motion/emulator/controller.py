@@ -360,7 +360,8 @@ class Controller:
         wait = self.model.settling
         stop = window if wait is None else min(wait, window)
         start = StartRamp(self.model.start_ramp)
-        return Settling(stop, window, ramp, start, self._in_position(window))
+        waited = self._in_position(window)
+        return Settling(stop, window, ramp, start, waited, self.model.servo.rest)
 
     def _in_position(self, averaged: float) -> InPosition | None:
         """What ends waits at stops early, where commands are averaged over so many seconds."""

@@ -75,6 +75,17 @@ class Servo:
         fit=FitRange(0.0, 1.0, 0.02),
     )
 
+    rest: float = figure(
+        "rest_s",
+        RealNumber(NOT_NEGATIVE),
+        Stage.TIMING,
+        "how much longer than time.settling_s a stop on the way that the program states may take, "
+        "until the servos are in position",
+        unit="s",
+        default=0.0,
+        fit=FitRange(0.0, 1.0, 0.01),
+    )
+
     def __post_init__(self) -> None:
         check_figures(self, "servo.")
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...errors import Note
 from ...program.move import Opaque, Wait
 from ...program.program import Program
-from ...program.zone import FINE, Zone
+from ...program.zone import FINE, Fine, Zone
 from ...robot.kinematics.chain import Chain
 from ..geometry.segments import Ends
 
@@ -91,7 +91,7 @@ class RouteLegs:
                 dwell.append(here.dwell)
                 continue
             dwell[-1] += here.dwell
-            if zones and (here.zone == FINE or zones[-1] == FINE):
+            if zones and any(isinstance(zone, Fine) for zone in (here.zone, zones[-1])):
                 zones[-1] = FINE
             elif zones:
                 zones[-1], owners[-1] = here.zone, move

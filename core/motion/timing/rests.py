@@ -70,7 +70,7 @@ class Rests:
     Args:
         knot: (S,), the interval that begins at each stop.
         length: (S,) s.
-        most: s.
+        most: (S,) s, what it may be.
         in_position: what is waited for; None rests for ``most`` in any case.
         approach: (S,) s, from when on the motion is within the window, to the stop; 0 without.
         entries: by which they are shorter than the longest; None where all are equal.
@@ -79,7 +79,7 @@ class Rests:
 
     knot: IntArray
     length: FloatArray
-    most: float
+    most: FloatArray
     in_position: InPosition | None
     approach: FloatArray
     entries: WindowEntries | None
@@ -91,7 +91,7 @@ class Rests:
         pieces: Pieces,
         along: ArcLength,
         stamp: Stamp,
-        most: float,
+        most: float | FloatArray,
         in_position: InPosition | None,
     ) -> Rests:
         """The rests of a stamped path.
@@ -100,20 +100,21 @@ class Rests:
             pieces: of the path.
             along: its samples, as they were stamped.
             stamp: times without rests.
-            most: s.
+            most: s, of all or of each stop (S,).
             in_position: what is waited for; None rests for ``most`` in any case.
         """
         stops = np.flatnonzero(pieces.stop[1:-1]) + 1
         knot = pieces.first_interval[stops]
-        longest, none = np.full(len(knot), most), np.zeros(len(knot))
+        none = np.zeros(len(knot))
+        longest = most + none
         if in_position is None or not len(knot):
-            return cls(knot, longest, most, None, none, None, none > 0.0)
+            return cls(knot, longest, longest, None, none, None, none > 0.0)
         entries = _entries(pieces, along, stamp, knot, in_position.window)
         approach = stamp.t[knot] - entries.t
         left = in_position.time - approach
-        counted = (left > 0.0) & (left < most)
-        length = np.clip(left, 0.0, most)
-        return cls(knot, length, most, in_position, approach, entries, counted)
+        counted = (left > 0.0) & (left < longest)
+        length = np.clip(left, 0.0, longest)
+        return cls(knot, length, longest, in_position, approach, entries, counted)
 
     def where_time_runs(self, rate: float) -> FloatArray:
         """(S,) s, the rests where time runs at a rate, but that of what is waited for."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ...arrays import FloatArray, IntArray
 from ...display import counted, in_line
 from ...errors import MotionError
+from ...program.zone import Fine, Zone
 from ...robot.kinematics.lean import lean
 from ..model.rules import Pace
 from ..path.between_states import joint_at
@@ -42,7 +44,8 @@ class Settling:
         end: s, after the last.
         ramp: s, of this what the place on the path is averaged over.
         start: how time comes up to speed when the motion begins.
-        in_position: what is waited for at stops on the way; None waits for all of ``stop``.
+        in_position: what is waited for at stops on the way; None waits for all of it.
+        servo: s, by which stops that the program states may take longer than ``stop``.
     """
 
     stop: float = 0.0
@@ -50,6 +53,12 @@ class Settling:
     ramp: float = 0.0
     start: StartRamp = SUDDEN
     in_position: InPosition | None = None
+    servo: float = 0.0
+
+    def at(self, zones: Sequence[Zone]) -> FloatArray:
+        """(S,) s, how long a stop at each of some waypoints may take."""
+        waits = [not isinstance(zone, Fine) or zone.programmed for zone in zones]
+        return self.stop + self.servo * np.array(waits, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -114,7 +123,9 @@ class Timing:
         first = pieces.first_interval
         wait = np.zeros(first[-1] + 1)
         wait[first[waypoint_edge]] = path.route.dwell[pieces.source[waypoint_edge, 0]]
-        rests = Rests.of(path.pieces, along, stamp, settling.stop, settling.in_position)
+        stops = 1 + np.flatnonzero(pieces.stop[1:-1])
+        most = settling.at([path.route.zones[k - 1] for k in pieces.source[stops, 0]])
+        rests = Rests.of(pieces, along, stamp, most, settling.in_position)
         wait[rests.knot] += rests.length
         wait[-1] += settling.end
         # A wait at a knot comes before the interval that leaves it.

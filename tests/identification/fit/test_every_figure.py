@@ -118,6 +118,7 @@ EXAMPLES: dict[str, tuple[Any, dict[str, Any]]] = {
     "servo.friction_rise_rad": (1e-3, {}),
     "servo.friction_fade_s": (0.2, {}),
     "servo.drag_s": ((0.0, 2e-3), {}),
+    "servo.rest_s": (0.02, {"time.in_position_rad": 0.0}),
     "servo.drag_speed_radps": (1.0, {}),
     "servo.drag_delay_s": (0.05, {}),
 }

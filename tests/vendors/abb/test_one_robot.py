@@ -28,7 +28,7 @@ def test_it_states_figures_of_one_robot_alone() -> None:
 def test_its_tool_stays_within_millimetres_of_its_type() -> None:
     program = flyby.read(ROOT / "examples" / "square.mod", robot=ROBOT.name)
     of_type, of_one = (
-        Controller(find_vendor("abb"), ROBOT, replace(model, settling=TYPE.settling))
+        Controller(find_vendor("abb"), ROBOT, replace(model, servo=replace(model.servo, rest=0.0)))
         .run(program)
         .trajectory
         for model in (TYPE, ONE)

@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 from flyby.core.motion.emulator.controller import Controller
 from flyby.core.motion.gradients.derivatives import Derivatives, ProgramGradient
 from flyby.core.motion.model.motion_model import MotionModel
+from flyby.core.motion.model.servo import Servo
 from flyby.core.motion.timing.rests import InPosition, Rests
 from flyby.core.motion.timing.timing import Timing
 from flyby.core.program.move import Move, MoveC, MoveJ, MoveL, Wait
 from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
-from flyby.core.program.zone import FINE, Radius, Zone
+from flyby.core.program.zone import FINE, Fine, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 
@@ -196,6 +197,22 @@ def test_no_stop_has_no_rest_and_nothing_to_wait_for_none_either() -> None:
     assert len(stamped(through).rests.length) == 0
     at_once = replace(MODEL, in_position_time=0.0)
     assert (stamped(varied(), at_once).rests.length == 0.0).all()
+
+
+@settings(max_examples=15, deadline=None)
+@given(program=programs(), wait=st.floats(0.0, 0.3), seed=st.integers(0, 1000))
+def test_only_programmed_stops_wait_for_servos(program, wait, seed) -> None:
+    rng, stop = np.random.default_rng(seed), Fine(programmed=False)
+    moves = tuple(
+        replace(move, zone=stop) if move.zone == FINE and rng.random() < 0.5 else move
+        for move in program.moves
+    )
+    waiting = replace(WAITING, servo=Servo(rest=wait))
+    here, before = (stamped(program.with_moves(moves), model) for model in (waiting, WAITING))
+    stops = [zone for zone in here.path.route.zones if isinstance(zone, Fine)]
+    longer = here.rests.length - before.rests.length
+    np.testing.assert_allclose(longer, [wait * zone.programmed for zone in stops], atol=1e-12)
+    assert here.duration == pytest.approx(before.duration + longer.sum())
 
 
 def test_a_programmed_wait_comes_on_top() -> None:
