@@ -317,15 +317,17 @@ def _lean(
         most = _doublings(windows[3][curve[POSITION]], begin, end)
     else:
         most = _doublings(windows[0][curve[POSITION]], begin, end)
-        for other in (
-            _doublings(windows[1][curve[TURNING]], begin, end),
-            _doublings(windows[2][curve[PRESCRIBED]], begin, end),
-        ):
-            if abs(other) > abs(most):
-                most = other
+        most = _further(most, _doublings(windows[1][curve[TURNING]], begin, end))
+        most = _further(most, _doublings(windows[2][curve[PRESCRIBED]], begin, end))
     if not abs(most) >= _EVEN:
         return 0
     return int(min(max(math.floor(most + 0.5), float(-_MOST_LEAN)), float(_MOST_LEAN)))
+
+
+@inner
+def _further(a: float, b: float) -> float:
+    """Which of two numbers is further from 0."""
+    return b if abs(b) > abs(a) else a
 
 
 @inner

@@ -215,8 +215,9 @@ def aim(
     for j in range(prescribed.size):
         q[prescribed[j]] = work.carried[0, j]
     for i in range(3):
-        v[i], v[3 + i] = work.value[1, i], omega[i]
-        a[i], a[3 + i] = work.value[2, i], alpha[i]
+        v[i], a[i] = work.value[1, i], work.value[2, i]
+    v[3], v[4], v[5] = omega
+    a[3], a[4], a[5] = alpha
 
 
 @inner
@@ -269,8 +270,10 @@ def _take_bias(chain: Chain, dq: FloatArray, a: FloatArray, work: Scratch) -> No
         linear = add(linear, cross(twice, scale(rate, lever)))
         angular = add(angular, cross(omega, spin))
         omega = add(omega, spin)
-    for i in range(3):
-        work.error[i], work.error[3 + i] = a[i] - linear[i], a[3 + i] - angular[i]
+    x, y, z = linear
+    work.error[0], work.error[1], work.error[2] = a[0] - x, a[1] - y, a[2] - z
+    x, y, z = angular
+    work.error[3], work.error[4], work.error[5] = a[3] - x, a[4] - y, a[5] - z
 
 
 @inner

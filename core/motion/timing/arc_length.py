@@ -189,7 +189,7 @@ def _even(
 ) -> None:
     """Write w and dw/dσ of the samples in zones, and their derivatives with respect to ℓ."""
     for z in range(zones.shape[0]):
-        first, last, joint = zones[z]
+        first, last, joint = zones[z, 0], zones[z, 1], zones[z, 2]
         floor, n0, n1 = _ends(states, first, last, joint, weights)
         length = sigma[last] - sigma[first]
         if not (n0 > 0.0 and n1 > 0.0 and length > 0.0):
@@ -305,7 +305,7 @@ def _pull_even(
 ) -> None:
     """Reverse of `_even`; ``bar`` becomes the gradient of the path's own samples."""
     for z in range(zones.shape[0]):
-        first, last, joint = zones[z]
+        first, last, joint = zones[z, 0], zones[z, 1], zones[z, 2]
         floor, n0, n1 = _ends(states, first, last, joint, weights)
         length = sigma[last] - sigma[first]
         if not (n0 > 0.0 and n1 > 0.0 and length > 0.0):

@@ -62,13 +62,9 @@ def turned_by(chain: Chain, k: int, value: float, placed: Rotation) -> Rotation:
 @inner
 def _finish(chain: Chain, turned: Rotation, at: Vector, R: FloatArray, p: FloatArray) -> None:
     """Write the TCP's pose, given the frame behind the last joint."""
-    for i in range(3):
-        for j in range(3):
-            R[i, j] = (
-                turned[3 * i] * chain.end_rotation[0, j]
-                + turned[3 * i + 1] * chain.end_rotation[1, j]
-                + turned[3 * i + 2] * chain.end_rotation[2, j]
-            )
+    for j in range(3):
+        column = chain.end_rotation[0, j], chain.end_rotation[1, j], chain.end_rotation[2, j]
+        R[0, j], R[1, j], R[2, j] = turn(turned, column)
     p[0], p[1], p[2] = add(at, turn(turned, load(chain.end_translation)))
 
 

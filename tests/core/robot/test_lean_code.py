@@ -137,7 +137,7 @@ def test_kernels_that_make_arrays_call_others_and_what_those_have_taken_in() -> 
 @inner
 def _counted(low: int, high: int) -> int:
     """Loops of all kinds, one in another."""
-    total = 0
+    total = int(0.7 * low) + int(low < high) + int(high)
     for i in range(high):
         for j in range(low, high):
             total = 3 * total + i - j if i != j else total + 1
@@ -248,3 +248,20 @@ def test_ranges_of_any_step() -> None:
     assert [_stepped(x, step) for step in (1, 2, -1)] == [10.0, 6.0, 0.0]
     with pytest.raises(ValueError, match="zero"):
         _stepped(x, 0)
+
+
+def test_arguments_of_another_type_are_refused() -> None:
+    """Where Python calls the machine code, past numba's own look at what it is given."""
+    numbers, counts = np.ones((2, 3, 3)), np.ones((2, 3), dtype=np.int64)
+    at = np.array([0])
+
+    def given() -> tuple[_Book, FloatArray]:
+        return _made(numbers, counts, np.array([True]))
+
+    (book, cube), (other, same) = given(), given()
+    expected = _worked(book, at, cube)
+    (compiled,) = (one.entry_point for one in _worked.overloads.values())
+    assert compiled(other, at, same) == expected
+    for wrong in (at.astype(np.int32), 3):
+        with pytest.raises(TypeError, match="not of its type"):
+            compiled(book, wrong, cube)

@@ -86,15 +86,21 @@ class WholeCalls(CPUCallConv):  # type: ignore[misc]
             safe: whether it never raises.
         """
         function = self.declare(builder.module, described)
-        if not safe:
-            status, found = self.call_function(
-                builder, function, described.restype, described.argtypes, args
-            )
-            with if_unlikely(builder, status.is_error):
-                self.context.call_conv.return_status_propagate(builder, status)
-            return found
+        if safe:
+            return self.call_safe(builder, function, described, args)
+        status, found = self.call_function(
+            builder, function, described.restype, described.argtypes, args
+        )
+        with if_unlikely(builder, status.is_error):
+            self.context.call_conv.return_status_propagate(builder, status)
+        return found
+
+    def call_safe(
+        self, builder: Any, function: Any, described: Any, args: Any, attrs: tuple[str, ...] = ()
+    ) -> Any:
+        """Call a function that never raises; what it returns."""
         results = function.function_type.args[:2]
         place = alloca_once(builder, results[0].pointee)
         given = self._get_arg_packer(described.argtypes).as_arguments(builder, args)
-        builder.call(function, [place, Constant(results[1], None), *given])
+        builder.call(function, [place, Constant(results[1], None), *given], attrs=attrs)
         return self.context.get_returned_value(builder, described.restype, builder.load(place))

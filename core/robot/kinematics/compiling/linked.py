@@ -16,15 +16,15 @@ from numba import _dynfunc, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
+from numba.core.interpreter import (
+    Interpreter,
+    peep_hole_delete_with_exit,
+    peep_hole_fuse_dict_add_updates,
+)
 from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.registry import CPUDispatcher
 from numba.core.transforms import canonicalize_cfg
-from numba.core.typed_passes import (
-    AnnotateTypes,
-    IRLegalization,
-    NoPythonBackend,
-    PreLowerStripPhis,
-)
+from numba.core.typed_passes import NoPythonBackend, PreLowerStripPhis
 from numba.core.untyped_passes import (
     FixupArgs,
     GenericRewrites,
@@ -36,6 +36,8 @@ from numba.core.untyped_passes import (
 from .calls import WholeCalls
 from .lowering import InnerLowering, LeanLowering
 from .typing import LeanTyping
+
+_FOREIGN = peep_hole_delete_with_exit, peep_hole_fuse_dict_add_updates
 
 
 class _Unoptimised(JITCodeLibrary):  # type: ignore[misc]
@@ -179,12 +181,13 @@ class _Unwrapped(LoweringPass):  # type: ignore[misc]
 
 
 @contextmanager
-def _without_lifetimes() -> Iterator[None]:
-    """While it compiles, numba does not work out after each pass where variables live.
+def _with_less() -> Iterator[None]:
+    """While it compiles, numba leaves out what such functions have no need of.
 
-    Only generators and what counts references need to know.
+    After each pass it works out where variables live, which only generators and what counts
+    references need to know; and it looks for remains of `with` and of dictionaries.
     """
-    whole = PostProcessor.run
+    whole, mend = PostProcessor.run, Interpreter.post_process
 
     def run(processor: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
         made = processor.func_ir
@@ -194,11 +197,14 @@ def _without_lifetimes() -> Iterator[None]:
         made.blocks = canonicalize_cfg(made.blocks)
         made.variable_lifetime, made.generator_info = VariableLifetime(made.blocks), None
 
-    PostProcessor.run = run
+    def post_process(interpreter: Any, peepholes: Any, made: Any) -> Any:
+        return mend(interpreter, [one for one in peepholes if one not in _FOREIGN], made)
+
+    PostProcessor.run, Interpreter.post_process = run, post_process
     try:
         yield
     finally:
-        PostProcessor.run = whole
+        PostProcessor.run, Interpreter.post_process = whole, mend
 
 
 class _Compiler(Compiler):  # type: ignore[misc]
@@ -233,8 +239,6 @@ class _Compiler(Compiler):  # type: ignore[misc]
             ReconstructSSA,
             LeanTyping,
             PreLowerStripPhis,
-            IRLegalization,
-            AnnotateTypes,
             *self.last,
         ):
             passes.add_pass(one, one._name)
@@ -242,7 +246,7 @@ class _Compiler(Compiler):  # type: ignore[misc]
         return [passes]
 
     def _compile_core(self) -> Any:
-        with _without_lifetimes():
+        with _with_less():
             return super()._compile_core()
 
 

@@ -24,7 +24,7 @@ from numba.core.typed_passes import BaseNativeLowering
 from .arrays import ITEMS, SHAPE, element, part, row
 from .calls import WholeCalls, never_raises
 from .numbers import operation
-from .typing import EXTREMES
+from .typing import EXTREMES, NUMBERS
 from .usage import VariableUse, is_element, is_row
 from .wrapper import make_wrapper
 
@@ -53,9 +53,6 @@ class _Lower(Lower):  # type: ignore[misc]
             self._kept[name] = value
         else:
             self.builder.store(value, self.getvar(name))
-
-    def delvar(self, name: str) -> None:
-        """Nothing: nothing is counted."""
 
     def lower_assign(self, ty: Any, inst: Any) -> Any:
         """What a variable is given."""
@@ -89,6 +86,8 @@ class _Lower(Lower):  # type: ignore[misc]
         called = getattr(self.typeof(expr.func.name), "typing_key", None)
         if called is bool and self.typeof(expr.args[0].name) == types.boolean:
             return self.loadvar(expr.args[0].name)
+        if called is int and len(expr.args) == 1 and self.typeof(expr.args[0].name) in NUMBERS:
+            return self._cast(expr.args[0], resty)
         if called in EXTREMES and resty in (types.float64, types.intp):
             return self._extreme(resty, called, expr.args)
         return super().lower_call(resty, expr)
@@ -223,7 +222,7 @@ class _LeanLower(_InnerLower):
 
     def create_cpython_wrapper(self, release_gil: bool = False) -> None:
         """Add what Python calls."""
-        make_wrapper(self.context, self.call_conv, self.library, self.fndesc, self.env)
+        make_wrapper(self.context, self.call_conv, self.library, self.fndesc)
 
 
 class _Lowering(BaseNativeLowering):  # type: ignore[misc]

@@ -20,15 +20,10 @@ from numba.core.typing import signature
 
 EXTREMES = (max, min)
 """What is lowered as a comparison, where numba compiles a function of Python for each signature."""
+NUMBERS = (types.float64, types.intp, types.boolean)
+"""What `int` is lowered of as it is cast, where numba does so in a function of its own."""
 _known: dict[tuple[Any, ...], tuple[Any, Any]] = {}
 """What was found, by what was asked for; with the types asked for, which thereby live on."""
-
-
-class _Plain:
-    """Messages as they are: numba colours one for each operation that it tries in vain."""
-
-    def __getattr__(self, kind: str) -> Callable[[str], str]:
-        return str
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -55,29 +50,39 @@ def _remembering(context: Any) -> Iterator[None]:
     if "resolve_function_type" in vars(context):
         yield
         return
-    colours = errors._termcolor_inst  # type: ignore[attr-defined]
-    errors._termcolor_inst = _Plain()  # type: ignore[attr-defined]
-    call, attribute, store = (
+    # numba colours a message for each operation that it tries in vain.
+    colours: Any = errors.termcolor()
+    colours._markup = lambda text, *_: text
+    call, attribute, store, constant = (
         context.resolve_function_type,
         context.resolve_getattr,
         context.resolve_setitem,
+        context.resolve_value_type,
     )
 
     def resolve_function_type(function: Any, args: Any, keywords: Any) -> Any:
         if keywords or not isinstance(function, types.Function | str):
             return call(function, args, keywords)
-        if getattr(function, "typing_key", None) in EXTREMES and _are_plain(args):
+        called = getattr(function, "typing_key", None)
+        if called is int and len(args) == 1 and args[0] in NUMBERS:
+            return signature(types.intp, *args)
+        if called in EXTREMES and _are_plain(args):
             kind = types.float64 if types.float64 in args else types.intp
             return signature(kind, *[kind] * len(args))
         return _recall(call, (function, *args), function, args, keywords)
 
+    def resolve_value_type(value: Any) -> Any:
+        # Numbers that are equal may be of several types.
+        return _recall(constant, (value,), value) if callable(value) else constant(value)
+
     context.resolve_function_type = resolve_function_type
+    context.resolve_value_type = resolve_value_type
     context.resolve_getattr = lambda held, name: _recall(attribute, (held, name), held, name)
     context.resolve_setitem = lambda *args: _recall(store, args, *args)
     try:
         yield
     finally:
-        errors._termcolor_inst = colours  # type: ignore[attr-defined]
+        del colours._markup, context.resolve_value_type
         del context.resolve_function_type, context.resolve_getattr, context.resolve_setitem
 
 

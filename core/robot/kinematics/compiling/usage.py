@@ -56,8 +56,6 @@ class VariableUse:
         for label, block in blocks.items():
             here = set()
             for statement in block.body:
-                if isinstance(statement, ir.Del):
-                    continue
                 reader = statement.value if isinstance(statement, ir.Assign) else statement
                 for name in _names(reader):
                     self._read[name].append(reader)
