@@ -251,6 +251,7 @@ def asked_json(program: Program, report: Report) -> dict[str, Any]:
     return {
         "cycle": {
             "passes": spent.passes,
+            "length": spent.length,
             "total_s": None if spent.faults else spent.total,
             "motion_s": spent.motion,
             "waiting_s": spent.waiting,

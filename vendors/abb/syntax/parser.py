@@ -30,6 +30,7 @@ from .tree import (
     Unreadable,
 )
 
+_WORD = re.compile(r"\w+")
 STORAGE = ("const", "var", "pers")
 HANDLERS = ("error", "undo", "backward")
 ROUTINES = ("proc", "func", "trap")
@@ -80,14 +81,13 @@ def _module(cursor: Cursor) -> Module:
 
 def _module_name(cursor: Cursor) -> str:
     """A module's name; of a damaged text also one that begins with a digit."""
-    damage, begin = cursor.source.damage, cursor.index
-    if cursor.kind != NUMBER or damage is None:
+    damage, start = cursor.source.damage, cursor.start
+    word = _WORD.match(cursor.source.text, start)
+    if cursor.kind != NUMBER or damage is None or word is None:
         return cursor.name("the module's name")
-    cursor.advance()
-    while cursor.kind in (NAME, NUMBER) and cursor.start == cursor.ends[cursor.index - 1]:
+    while cursor.kind != END and cursor.start < word.end():
         cursor.advance()
-    start, end = cursor.starts[begin], cursor.ends[cursor.index - 1]
-    text = cursor.source.text[start:end]
+    text = word[0]
     error = cursor.source.error(f"the module's name {text} begins with a digit", start)
     damage.step_over(error, "it is read all the same")
     return text
