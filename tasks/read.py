@@ -279,6 +279,7 @@ def from_ready_posture(
     still = known and without is not None and not leads_somewhere(without)
     if without is not None and not still and not _open(without):
         return without
+    from ..core.program.assumed_places import supposed_from_start
     from ..core.program.target import JointTarget
     from ..core.robot.ready_posture import ready_posture
 
@@ -304,6 +305,7 @@ def from_ready_posture(
     note = Note(
         f"{why}: the robot is taken to stand at {shown} before; {spelt('start')} says where it does"
     )
+    program = supposed_from_start(program, without)
     return replace(program, notes=(note, *program.notes))
 
 

@@ -1,15 +1,19 @@
-"""Moves whose tool or work object nobody knows: they are driven with the controller's own."""
+"""Moves of which nobody knows the place, the tool or the work object, though they are driven with
+what is taken for these: nothing is proven of them, and nothing written."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 
 from ..door import spelt
 from ..errors import InputError
 from ..spatial.pose import IDENTITY
-from .move import Move
+from .move import Move, Opaque, Wait
 from .program import Program
 from .question import QuestionKind
+
+FROM_THE_START = "where it goes depends on where the robot stands before the first move"
 
 
 def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
@@ -51,11 +55,31 @@ def refuse_assumed(program: Program) -> None:
         )
     for move in program.moves:
         if move.supposed:
+            said = f"in a file ({spelt('answers')}; `flyby ask` writes one)"
+            if move.supposed == FROM_THE_START:
+                said = f"({spelt('start')})"
             raise InputError(
                 f"{move.statement}: {move.supposed}, which nobody says: nothing can be proven or "
-                f"written with what is taken for it; say it in a file ({spelt('answers')}; "
-                "`flyby ask` writes one)"
+                f"written with what is taken for it; say it {said}"
             )
+
+
+def supposed_from_start(program: Program, without: Program | None) -> Program:
+    """A program that was read from a start which is taken for the true one: moves say so that
+    nobody knew where to drive without it.
+
+    Args:
+        without: the program as it is read without a start; None where it cannot be.
+    """
+    unknown = iter(() if without is None else without.moves)
+    statements = []
+    for statement in program.statements:
+        if not isinstance(statement, Wait | Opaque):
+            known = without is not None and not next(unknown, statement).open
+            if not (known or statement.open or statement.supposed):
+                statement = replace(statement, supposed=FROM_THE_START)
+        statements.append(statement)
+    return replace(program, statements=tuple(statements))
 
 
 def _asked(program: Program) -> dict[str, str]:

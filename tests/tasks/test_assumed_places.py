@@ -81,3 +81,18 @@ def rapid_file(folder: Path) -> Path:
     file = folder / "a.mod"
     file.write_text(f"MODULE M\nPROC main()\n{move}\nENDPROC\nENDMODULE\n", "utf-8")
     return file
+
+
+def test_nothing_is_proven_of_a_way_that_begins_where_nobody_knows() -> None:
+    """A line from where the robot stands is driven from its ready posture, which is a guess."""
+    moves = "\n".join(
+        f"MoveL Offs(p,0,0,{z}),v200,{zone},tool0;" for z, zone in ((50, "z10"), (0, "fine"))
+    )
+    text = f"MODULE M\nVAR robtarget p;\nPROC main()\np:=CRobT();\n{moves}\nENDPROC\nENDMODULE\n"
+    program = flyby.read(text, robot=ROBOT)
+    assert not flyby.emulate(program).faults
+    for task in (flyby.zones, flyby.optimize):
+        with pytest.raises(InputError, match=r"stands before the first move, .*say it \(start\)"):
+            task(program)
+    known = flyby.read(text, robot=ROBOT, start=(0.0, 0.0, 0.0, 0.0, 0.5, 0.0))
+    assert not any(move.supposed for move in known.moves)

@@ -418,3 +418,21 @@ def test_loads_that_no_file_says_are_answered_as_they_are_shown(tmp_path: Path) 
     assert load.example == (("M", 1.0),)
     told = read(body, tmp_path, '"LOAD_DATA[4]" = { M = 12 }').moves[-1].tool.load
     assert told is not None and told.mass == 12.0
+
+
+@pytest.mark.parametrize(
+    ("condition", "holds", "told"),
+    [
+        *(("$T1", False, True), ("$T2", False, True), ("$AUT", False, True)),
+        *(("$EXT", True, False), ("$MODE_OP==#EX", True, "#T2"), ("$MODE_OP<>#AUT", True, "#AUT")),
+        ("$MODE_OP==#T1", False, "#T1"),
+    ],
+)
+def test_a_plc_runs_the_program_where_nobody_says_otherwise(krl, condition, holds, told) -> None:
+    move = "PTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}\n"
+    text = f"DEF demo( )\nIF {condition} THEN\n{move}ENDIF\nEND"
+    program = krl(src=text, answers=Answers(goes_on=True))
+    assert (len(program.moves), program.questions) == (int(holds), ())
+    values = {condition.split("=")[0].split("<")[0].lower(): told}
+    other = krl(src=text, answers=Answers(goes_on=True, values=values))
+    assert len(other.moves) == int(not holds)

@@ -167,6 +167,7 @@ def test_utf16_is_read(tmp_path):
         "DEF a( )\nx={" + "X 1," * 20000 + "\nEND",
         "DEF a( )\n" + "x" * 100000 + "\nEND",
         "DEF a( )\nINT n[999999999]\nEND",
+        "DEF a( )\nPTP x" + ".x" * 10000 + "\nEND",
         "DEF a( )\nx=1\nLOOP\nx=x*2\nIF x<0 THEN\nEXIT\nENDIF\nENDLOOP\nEND",
     ],
 )

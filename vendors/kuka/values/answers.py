@@ -19,6 +19,12 @@ from .types import FRAME_FIELDS, PREDEFINED
 from .values import Choice, Struct, Unknown, Value
 
 _TRUTHS = frozenset({"$in", "$out", "$flag", "$cycflag"})
+_IN_PRODUCTION: dict[str, Value] = {
+    "$mode_op": Choice("ex"),
+    **dict.fromkeys(("$t1", "$t2", "$aut"), False),
+    "$ext": True,
+}
+"""Which mode the controller is in where nobody says it: a PLC runs it."""
 _NUMBER = r"[-+]?\d*\.?\d+(?:[eE][-+]?\d+)?"
 _STRUCTURE = re.compile(rf"\{{\s*[A-Za-z]\w*\s+{_NUMBER}(?:\s*,\s*[A-Za-z]\w*\s+{_NUMBER})*\s*\}}")
 """``{X 700,Y 0,Z 500}``"""
@@ -69,13 +75,18 @@ class DatumAnswers:
         truths = system and node.name in _TRUTHS
         if path and path[-1] in ("x", "y", "z", "a", "b", "c"):
             self.course.used_as(spelled(node.text, path[:-1]), *EXPECTED["frame"])
-        if path and self.course.lasting(spelled(node.text, path)) is None:
+        told = self.course.answers.values
+        if path and told and self.course.lasting(spelled(node.text, path)) is None:
             part = self._part_of_answer(node, path)
             if part is not None:
                 return part
-        answer = self.answer(node, path, kind, "bool" if truths else "")
+        mode = None if why or path else _IN_PRODUCTION.get(node.name)
+        asked = kind if mode is None else None
+        answer = self.answer(node, path, asked, "bool" if truths else "")
         if answer is not None:
             return answer
+        if mode is not None:
+            return mode
         if why is None:
             why = "" if self.data.is_system(node.name) else " (declared in no file at hand)"
         text = spelled(node.text, path)
