@@ -319,13 +319,13 @@ def test_several_modules_of_one_text_are_one_program():
 
 
 def test_values_of_types_that_are_not_read_stay_unknown():
-    data = "VAR stoppointdata s; VAR num k;\nRECORD pair\nnum a;\nclock c;\nENDRECORD\nVAR pair r;"
-    routines = "PROC f(stoppointdata x)\nat x.progsynch;\nENDPROC"
+    data = "VAR seamdata s; VAR num k;\nRECORD pair\nnum a;\nclock c;\nENDRECORD\nVAR pair r;"
+    routines = "PROC f(seamdata x)\nat x.ignition;\nENDPROC"
     for body in (
-        "s := [1,2]; at s.inpos;",
+        "s := [1,2]; at s.purge;",
         "f 5;",
         "r.c := 5; at r.c;",
-        "s.inpos := 1; at s.inpos;",
+        "s.purge := 1; at s.purge;",
     ):
         assert heights(body, data, routines) == [0]
     assert heights("r.a := 3; at r.a;", data) == [3]
