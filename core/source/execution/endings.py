@@ -347,9 +347,9 @@ class Endings(Generic[Block]):
         begun = passes.begun[-1] if passes.count > 1 else passes.start.moves
         end, length = self._host.meter.moves, 1
         if len(passes.heads) == passes.count > 1:
-            first, behind = passes.last_round(self._host.meter)
-            heads = [*(moves for moves, *_ in passes.heads), end]
-            begun, end, length = heads[first], heads[behind], behind - first
+            first = passes.last_round()
+            if first is not None:
+                begun, length = passes.heads[first][0], passes.count - first
         if end > begun:
             self._host.course.cycle = Cycle(begun, end, passes.count, passes.loop.span, length)
 
@@ -424,6 +424,17 @@ class Endings(Generic[Block]):
     def _end(self, passes: Passes[Block], words: str) -> NoReturn:
         """End the program in a loop that nothing ends."""
         what = "the program ends there"
+        if self._has_moved(passes) and len(passes.heads) == passes.count:
+            names = self._analysis.choosing(passes.loop.body)
+            if passes.last_round() is None:
+                self._host.note_once(
+                    f"state {passes.loop.span.file}:{passes.loop.span.start}",
+                    f"what a pass of the loop {words} does depends on "
+                    f"{_named(names & self._analysis.written(passes.loop.body))}, whose value has "
+                    "not come back: the next pass may go another way, and no cycle is known; "
+                    f"more are read with {spelt('cycles')}",
+                    passes.loop.span,
+                )
         if self._has_moved(passes):
             what = "one pass is read" if passes.count == 1 else f"{passes.count} passes are read"
         self._host.finish(f"the program is an endless loop {words}: {what}", passes.loop.span)

@@ -67,7 +67,6 @@ class Meter:
     Attributes:
         moves: that were executed.
         row: statements that were executed since the last move.
-        way: the statements that moved the robot, one after the other.
     """
 
     def __init__(self, limits: ExecutionLimits, executed: Executed | None = None) -> None:
@@ -75,7 +74,6 @@ class Meter:
         self._executed = executed
         self.row = 0
         self.moves = 0
-        self.way: list[tuple[str, int, int]] = []
         self._places: set[tuple[str, int, int]] = set()
         self._calls = 0
 
@@ -110,8 +108,7 @@ class Meter:
         """
         self.moves += 1
         self.row = 0
-        self.way.append((span.file, span.line, span.column))
-        self._places.add(self.way[-1])
+        self._places.add((span.file, span.line, span.column))
         if self.moves - len(self._places) > self._limits.moves:
             raise _endless(f"{self._limits.moves} moves are executed again", span)
 

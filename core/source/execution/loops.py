@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -169,18 +168,8 @@ class Passes(Generic[Block]):
         at_once = driven == self.start.driven and meter.driven >= driven + most
         return driven < meter.driven and not at_once
 
-    def last_round(self, meter: Meter) -> tuple[int, int]:
-        """The passes that make the last round of a loop: the first one, and the one behind it.
-
-        From where the data that choose where to drive were as they are now; where they never were,
-        from behind the pass that drove like the last one that moved the robot.
-        """
-        states = [state for *_, state in self.heads]
-        again = next((k for k, state in enumerate(states) if not state.changed()), None)
-        if again is not None:
-            return again, self.count
-        heads = [*(moves for moves, *_ in self.heads), meter.moves]
-        ways = [tuple(meter.way[a:b]) for a, b in itertools.pairwise(heads)]
-        last = max((k for k, way in enumerate(ways) if way), default=self.count - 1)
-        like = next((k for k in range(last - 1, -1, -1) if ways[k] == ways[last]), -1)
-        return like + 1, last + 1
+    def last_round(self) -> int | None:
+        """The first pass of the last round of a loop: from where the data that choose where to
+        drive were as they are now; None where they never were."""
+        states = (state for *_, state in self.heads)
+        return next((k for k, state in enumerate(states) if not state.changed()), None)
