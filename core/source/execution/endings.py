@@ -424,20 +424,24 @@ class Endings(Generic[Block]):
     def _end(self, passes: Passes[Block], words: str) -> NoReturn:
         """End the program in a loop that nothing ends."""
         what = "the program ends there"
-        if self._has_moved(passes) and len(passes.heads) == passes.count:
-            names = self._analysis.choosing(passes.loop.body)
-            if passes.last_round() is None:
-                self._host.note_once(
-                    f"state {passes.loop.span.file}:{passes.loop.span.start}",
-                    f"what a pass of the loop {words} does depends on "
-                    f"{_named(names & self._analysis.written(passes.loop.body))}, whose value has "
-                    "not come back: the next pass may go another way, and no cycle is known; "
-                    f"more are read with {spelt('cycles')}",
-                    passes.loop.span,
-                )
         if self._has_moved(passes):
+            self._say_state(passes, words)
             what = "one pass is read" if passes.count == 1 else f"{passes.count} passes are read"
         self._host.finish(f"the program is an endless loop {words}: {what}", passes.loop.span)
+
+    def _say_state(self, passes: Passes[Block], words: str) -> None:
+        """Say where the data that choose the way of a pass have not come back."""
+        body, span = passes.loop.body, passes.loop.span
+        if len(passes.heads) != passes.count or passes.last_round() is not None:
+            return
+        names = _named(self._analysis.choosing(body) & self._analysis.written(body))
+        self._host.note_once(
+            f"state {span.file}:{span.start}",
+            f"what a pass of the loop {words} does depends on {names}, whose value has not come "
+            "back: the next pass may go another way, and no cycle is known; more are read with "
+            f"{spelt('cycles')}",
+            span,
+        )
 
 
 def _named(names: frozenset[str]) -> str:
