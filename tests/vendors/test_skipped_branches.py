@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from flyby.core.registry import find_robot, find_vendor
-from flyby.core.source.execution.analysis import Analysis
+from flyby.core.source.execution.control_flow.analysis import Analysis
 
 PASSES = 300
 RAPID = f"""MODULE m

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 
 from ...dialect import Unsaid
-from ..execution.steps import NOTHING, Exit, Step
+from ..execution.control_flow.steps import NOTHING, Exit, Step
 from .expressions import Datum, Expression, Number, Operation, data_in
 from .program import Grammar, LineProgram, routine_key
 from .settings import Settings
@@ -45,7 +45,7 @@ class Statements:
         )
 
     def steps(self, block: Body) -> Sequence[Step[Body]]:
-        """See `core.source.execution.steps.Tree`."""
+        """See `core.source.execution.control_flow.steps.Tree`."""
         return [self._step(statement) for statement in block.statements]
 
     def reads(self, expressions: Sequence[Expression]) -> frozenset[str]:

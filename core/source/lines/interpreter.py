@@ -1,7 +1,7 @@
 """Runs a program of lines: statements → the moves, waits and kept statements that the robot does.
 
 What the text leaves open (inputs, registers that nobody sets) travels as `Unknown`; where a jump
-depends on one, `core.source.execution.flow` decides, and where a move does, it is refused.
+depends on one, `core.source.execution.control_flow` decides, and where a move does, it is refused.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from ...program import move
 from ...program.entry_point import ALL, EntryPoint, listed
 from ...program.move import Wait
 from ...program.program import Program
-from ..execution.analysis import Analysis
+from ..execution.control_flow.analysis import Analysis
+from ..execution.control_flow.flow import Flow
+from ..execution.control_flow.loops import Loop
+from ..execution.control_flow.steps import NOTHING
 from ..execution.course import Course
-from ..execution.flow import Flow
 from ..execution.limits import Meter
-from ..execution.loops import Loop
 from ..execution.outputs import Outputs
 from ..execution.provenance import Reads, Source
 from ..execution.scopes import unknown_name
-from ..execution.steps import NOTHING
 from ..execution.transcript import MoveParts, Transcript
 from ..reading import ReadOptions
 from ..text.nodes import jumps_nowhere, no_label
@@ -191,7 +191,7 @@ class _Interpreter:
         )
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
-        """See `core.source.execution.flow.Host`."""
+        """See `core.source.execution.host.Host`."""
         return Snapshot(self._values, names)
 
     def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
@@ -199,7 +199,7 @@ class _Interpreter:
         return []
 
     def open_move(self, error: SourceError, span: Span) -> bool:
-        """See `core.source.execution.flow.Host`."""
+        """See `core.source.execution.host.Host`."""
         if not self._out.leaves_open(error, span):
             return False
         self.meter.move(span)
@@ -207,15 +207,15 @@ class _Interpreter:
         return True
 
     def pause(self, text: str, span: Span) -> None:
-        """See `core.source.execution.flow.Host`."""
+        """See `core.source.execution.host.Host`."""
         self._out.pause(text, span)
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
-        """See `core.source.execution.flow.Host`."""
+        """See `core.source.execution.host.Host`."""
         self._out.notes.once(kind, message, span)
 
     def finish(self, message: str, span: Span) -> NoReturn:
-        """See `core.source.execution.flow.Host`."""
+        """See `core.source.execution.host.Host`."""
         self._out.notes.once("end", message, span)
         raise _Finished
 

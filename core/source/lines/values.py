@@ -52,7 +52,7 @@ class Unknown:
 
 
 class Snapshot:
-    """Registers as they are now; see `core.source.execution.flow.Snapshot`."""
+    """Registers as they are now; see `core.source.execution.host.Snapshot`."""
 
     def __init__(self, values: Values, names: frozenset[str] | None) -> None:
         self._values = values

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.steps import NOTHING, PLACE, Exit, Step
+from ....core.source.execution.control_flow.analysis import Analysis
+from ....core.source.execution.control_flow.steps import NOTHING, PLACE, Exit, Step
 from ....core.source.text.lexer import words
 from ..motion.settings_instructions import SETS
 from ..syntax import tree
@@ -66,7 +66,7 @@ class RapidTree:
                 yield self.body(routine)
 
     def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
-        """See `core.source.execution.steps.Tree.steps`."""
+        """See `core.source.execution.control_flow.steps.Tree.steps`."""
         home = self._homes.get(id(block)) or self._home()
         return [self._step(statement, home) for statement in block.statements]
 

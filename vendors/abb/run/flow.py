@@ -1,5 +1,5 @@
 """IF, TEST, FOR and WHILE: carried out where their conditions are known, and decided by rule
-(`core.source.execution.flow`) where only the running controller knows them."""
+(`core.source.execution.control_flow.flow`) where only the running controller knows them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from ....core.errors import SourceError
-from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.control_flow.analysis import Analysis
+from ....core.source.execution.control_flow.flow import Flow
+from ....core.source.execution.control_flow.loops import Loop, to_bound
 from ....core.source.execution.course import Course
-from ....core.source.execution.flow import Flow
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
-from ....core.source.execution.loops import Loop, to_bound
 from ..syntax.traversal import calls_in
 from ..syntax.tree import Block, Expression, For, If, Operation, Test, Truth, While
 from ..values.evaluator import Evaluator

@@ -34,7 +34,7 @@ class Finished(Exception):
 
 
 class RapidHost(ABC):
-    """Values, position and transcript of a run; see `core.source.execution.flow.Host`.
+    """Values, position and transcript of a run; see `core.source.execution.host.Host`.
 
     Args:
         data: modules, routines and data of the program.
@@ -97,7 +97,7 @@ class RapidHost(ABC):
         return self.position.asked
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
-        """See `core.source.execution.flow.Host.snapshot`."""
+        """See `core.source.execution.host.Host.snapshot`."""
         scopes = [*self._frames[-1].scope.outwards()]
         if names is None:
             scopes += self.data.scopes()

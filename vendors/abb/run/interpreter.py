@@ -16,9 +16,9 @@ from weakref import proxy
 from ....core.door import spelt
 from ....core.errors import Note, SourceError, Span, StopError
 from ....core.program.move import Statement as ProgramStatement
-from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.flow import Flow
-from ....core.source.execution.loops import Loop
+from ....core.source.execution.control_flow.analysis import Analysis
+from ....core.source.execution.control_flow.flow import Flow
+from ....core.source.execution.control_flow.loops import Loop
 from ....core.source.execution.provenance import ELSEWHERE
 from ....core.source.reading import ReadOptions
 from ....core.source.text.nodes import no_label

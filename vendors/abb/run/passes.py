@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 
 from ....core.door import spelt
 from ....core.errors import SourceError
-from ....core.source.execution.analysis import Analysis
-from ....core.source.execution.steps import NOTHING
+from ....core.source.execution.control_flow.analysis import Analysis
+from ....core.source.execution.control_flow.steps import NOTHING
 from ..syntax import tree
 from ..syntax.traversal import names_in
 from ..values.evaluator import Evaluator

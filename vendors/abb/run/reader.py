@@ -5,7 +5,8 @@ as its course follows from the text itself. What is decided here, and where a co
 
 - What only the running controller knows (signals, clocks, an operator's answer) is carried along; a
   move that depends on it is driven with its default (`values.defaults`), or left out where its
-  target has none. Branches and loops are decided by the rules of `core.source.execution.flow`.
+  target has none. Branches and loops are decided by the rules of
+  `core.source.execution.control_flow.flow`.
 - Instructions that do not move the robot stay as opaque statements; ``WaitUntil``, ``WaitDI`` and
   their like are stops and taken as satisfied at once. ERROR handlers run for errors that the
   program makes itself (`recovery`); traps do not run. A routine of which nobody has the text is

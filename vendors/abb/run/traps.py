@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from ....core.errors import Span
-from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.control_flow.analysis import Analysis
 from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Block, Name, Routine
 from ..values.data import Globals

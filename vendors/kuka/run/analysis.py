@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from ....core.errors import SourceError
-from ....core.source.execution.steps import NOTHING, PLACE, Exit, Step
+from ....core.source.execution.control_flow.steps import NOTHING, PLACE, Exit, Step
 from ....core.source.text.lexer import words
 from ..motion.bas import set_by
 from ..syntax import tree
@@ -86,7 +86,7 @@ class KrlTree:
         return any(True for _ in self._functions(expressions, home))
 
     def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
-        """See `core.source.execution.steps.Tree.steps`."""
+        """See `core.source.execution.control_flow.steps.Tree.steps`."""
         home = self._homes.get(id(block)) or self._scopes[-1].module
         return [self._step(statement, home) for statement in block.statements]
 

@@ -1,5 +1,5 @@
 """IF, SWITCH, loops and jumps: carried out where their conditions are known, and decided by rule
-(`core.source.execution.flow`) where only the running controller knows them."""
+(`core.source.execution.control_flow.flow`) where only the running controller knows them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution import flow, loops
+from ....core.source.execution.control_flow import flow, loops
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.transcript import Notes
 from ..syntax.traversal import calls_in

@@ -23,7 +23,7 @@ from .exits import Finished
 
 
 class KrlHost:
-    """See `core.source.execution.flow.Host`.
+    """See `core.source.execution.host.Host`.
 
     Args:
         course: decides, and remembers what was decided.
@@ -72,7 +72,7 @@ class KrlHost:
         return self._position.place
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
-        """See `core.source.execution.flow.Host.snapshot`."""
+        """See `core.source.execution.host.Host.snapshot`."""
         scope = self._scopes[-1]
         looked = {
             name: self._data.find(name, scope)

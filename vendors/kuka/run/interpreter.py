@@ -14,9 +14,9 @@ from ....core.errors import LeftOpenError, Note, SourceError, Span, StopError
 from ....core.program.call import Call as ProgramCall
 from ....core.program.entry_point import EntryPoint
 from ....core.program.move import Statement as ProgramStatement
-from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.control_flow.analysis import Analysis
+from ....core.source.execution.control_flow.flow import Flow as Rules
 from ....core.source.execution.course import Course
-from ....core.source.execution.flow import Flow as Rules
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.streams import Streaming
 from ....core.source.execution.transcript import Transcript

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.control_flow.analysis import Analysis
 from ....core.source.execution.transcript import Notes
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor

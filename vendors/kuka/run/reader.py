@@ -7,8 +7,8 @@ course follows from the text itself. What is decided here, and where a controlle
   one that moves the robot and that no other calls. If it takes arguments, they have no values, as
   on a controller that is sent there by hand.
 - Branches and loops that only the running controller decides, and loops that nothing in the program
-  ends, follow the rules of `core.source.execution.flow`. Clocks and inputs are not known even after
-  they were set.
+  ends, follow the rules of `core.source.execution.control_flow.flow`. Clocks and inputs are not
+  known even after they were set.
 - Of a ``SWITCH`` with cases that nobody knows, a known one that fits is taken.
 - ``BAS(…)``, the functions of inline forms and the folds' data are carried out natively
   (`basis`, `inline`). Initialisations of technology packages, I/O and messages stay as opaque

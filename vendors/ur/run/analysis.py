@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from ....core.source.execution.steps import PLACE, Exit, Step
+from ....core.source.execution.control_flow.steps import PLACE, Exit, Step
 from ....core.source.text.lexer import words
 from ..motion.jogs import PARAMETERS as JOGS
 from ..motion.kinematics import KINEMATICS
@@ -72,7 +72,7 @@ class ScriptTree:
         return names if KINEMATICS.keys().isdisjoint(_called(expression)) else names | {PLACE}
 
     def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
-        """See `core.source.execution.steps.Tree.steps`."""
+        """See `core.source.execution.control_flow.steps.Tree.steps`."""
         return [self._step(s) for s in block if not isinstance(s, tree.Define)]
 
     def _step(self, statement: tree.Statement) -> Step[tree.Block]:

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from ....core.errors import InputError, SourceError, Span
 from ....core.program.move import Wait
-from ....core.source.execution.flow import Flow
+from ....core.source.execution.control_flow.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.provenance import ELSEWHERE

@@ -1,14 +1,14 @@
 """``if`` and ``while``: carried out where their conditions are known, and decided by rule
-(`core.source.execution.flow`) where only the running controller knows them."""
+(`core.source.execution.control_flow.flow`) where only the running controller knows them."""
 
 from __future__ import annotations
 
 from typing import Protocol
 
 from ....core.program.move import Opaque
-from ....core.source.execution.flow import Flow
+from ....core.source.execution.control_flow.flow import Flow
+from ....core.source.execution.control_flow.loops import Loop, to_bound
 from ....core.source.execution.host import Undecided
-from ....core.source.execution.loops import Loop, to_bound
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import assigned, calls_in, returns

@@ -15,9 +15,9 @@ from weakref import proxy
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
-from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.control_flow.analysis import Analysis
+from ....core.source.execution.control_flow.flow import Flow
 from ....core.source.execution.course import Course
-from ....core.source.execution.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.streams import Streaming
@@ -148,7 +148,7 @@ class Interpreter:
         return self.position.place
 
     def snapshot(self, names: frozenset[str] | None, written: frozenset[str]) -> Snapshot:
-        """Variables as they are now; see `core.source.execution.flow.Host`."""
+        """Variables as they are now; see `core.source.execution.host.Host`."""
         watched = written if names is None else names
         return Snapshot(watched, self.frames[-1].scope if self.frames else self.root)
 

@@ -7,7 +7,7 @@ controller may differ:
 - Statements outside of functions are executed in order. If they neither move the robot nor call a
   function, the file's one program is: the only ``def`` without required parameters that no other
   one calls, or the one named ``main`` or like the file.
-- Branches and loops that cannot be decided: see `core.source.execution.flow`.
+- Branches and loops that cannot be decided: see `core.source.execution.control_flow.flow`.
 - A loop that waits for what is not known is left at once and kept, and the robot stops there.
 - Calls that leave the robot alone are kept as they stand. Threads: see `threads`. Functions that
   nobody declares are stepped over, with a note.

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.analysis import Analysis
+from ....core.source.execution.control_flow.analysis import Analysis
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import calls_of

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flyby.core.source.execution.analysis import Analysis
-from flyby.core.source.execution.steps import Step
+from flyby.core.source.execution.control_flow.analysis import Analysis
+from flyby.core.source.execution.control_flow.steps import Step
 
 
 class Routines:

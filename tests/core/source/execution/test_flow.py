@@ -9,16 +9,16 @@ from typing import NoReturn
 import pytest
 
 from flyby.core.errors import SourceError, Span
-from flyby.core.source.execution.analysis import Analysis
 from flyby.core.source.execution.answers import Answers
+from flyby.core.source.execution.control_flow.analysis import Analysis
+from flyby.core.source.execution.control_flow.endings import FOLLOWED
+from flyby.core.source.execution.control_flow.flow import Flow
+from flyby.core.source.execution.control_flow.loops import Loop
+from flyby.core.source.execution.control_flow.steps import PLACE, Exit, Step
 from flyby.core.source.execution.course import Course
-from flyby.core.source.execution.endings import FOLLOWED
-from flyby.core.source.execution.flow import Flow
 from flyby.core.source.execution.host import Undecided
 from flyby.core.source.execution.limits import ExecutionLimits, Meter
-from flyby.core.source.execution.loops import Loop
 from flyby.core.source.execution.outputs import Outputs
-from flyby.core.source.execution.steps import PLACE, Exit, Step
 
 UNKNOWN = object()
 Value = object

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic
 
-from ...errors import InputError, SourceError, Span
+from ....errors import InputError, SourceError, Span
+from ..course import Course
 from .analysis import Analysis
-from .course import Course
 from .steps import Block, Exit
 
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Generic
 
-from ...errors import Span
-from .host import Snapshot
-from .limits import Meter
+from ....errors import Span
+from ..host import Snapshot
+from ..limits import Meter
 from .steps import NOTHING, Block
 
 _IDLE = 10

@@ -40,12 +40,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Generic
 
-from ...errors import Span
+from ....errors import Span
+from ..host import Host, Undecided
+from ..limits import EndlessError
 from .analysis import Analysis
 from .branches import ActiveBlocks, Branches
 from .endings import Endings
-from .host import Host, Undecided
-from .limits import EndlessError
 from .loops import Loop, Passes, Start
 from .steps import Block
 

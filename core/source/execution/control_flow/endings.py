@@ -6,13 +6,13 @@ import math
 from collections.abc import Callable
 from typing import Generic, NoReturn
 
-from ...display import counted
-from ...door import spelt
-from ...errors import SourceError, Span
-from ...program.cycle import Cycle
+from ....display import counted
+from ....door import spelt
+from ....errors import SourceError, Span
+from ....program.cycle import Cycle
+from ..host import Host
 from .analysis import Analysis
 from .branches import Branches, Skip
-from .host import Host
 from .loops import Loop, Passes, Start
 from .steps import NOTHING, PLACE, Block, Exit
 
