@@ -3,15 +3,17 @@ what is taken for these: nothing is proven of them, and nothing written."""
 
 from __future__ import annotations
 
+from collections import defaultdict, deque
 from collections.abc import Collection
 from dataclasses import replace
 
 from ..door import spelt
-from ..errors import InputError
+from ..errors import InputError, Span
 from ..spatial.pose import IDENTITY
-from .move import Move, Opaque, Wait
+from .move import Move, MoveC, Opaque, Wait
 from .program import Program
 from .question import QuestionKind
+from .target import JointTarget
 
 FROM_THE_START = "where it goes depends on where the robot stands before the first move"
 
@@ -66,20 +68,36 @@ def refuse_assumed(program: Program) -> None:
 
 def supposed_from_start(program: Program, without: Program | None) -> Program:
     """A program that was read from a start which is taken for the true one: moves say so that
-    nobody knew where to drive without it.
+    nobody knew without it, or that went elsewhere.
 
     Args:
         without: the program as it is read without a start; None where it cannot be.
     """
-    unknown = iter(() if without is None else without.moves)
+    known = defaultdict[Span | None, deque[Move]](deque)
+    for move in () if without is None else without.moves:
+        known[move.statement].append(move)  # of a loop several: one for each pass
     statements = []
     for statement in program.statements:
         if not isinstance(statement, Wait | Opaque):
-            known = without is not None and not next(unknown, statement).open
-            if not (known or statement.open or statement.supposed):
+            others = known[statement.statement]
+            same = bool(others) and _goes_alike(statement, others.popleft())
+            if not (same or statement.open or statement.supposed):
                 statement = replace(statement, supposed=FROM_THE_START)
         statements.append(statement)
     return replace(program, statements=tuple(statements))
+
+
+def _goes_alike(move: Move, other: Move) -> bool:
+    """Whether it is known of another reading of a move that it goes the same way."""
+    return not (other.open or other.supposed) and _way(move) == _way(other)
+
+
+def _way(move: Move) -> tuple[object, ...]:
+    """What the path of a move is made of, without configurations: where a program leaves these to
+    the controller they are those near to where it starts."""
+    via = (move.via.pose, move.orientation) if isinstance(move, MoveC) else ()
+    at = move.target.joints if isinstance(move.target, JointTarget) else move.target.pose
+    return at, move.target.external, move.zone, move.tool, move.work_object, via
 
 
 def _asked(program: Program) -> dict[str, str]:

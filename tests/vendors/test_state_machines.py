@@ -15,14 +15,29 @@ ROBOTS = {"abb": "abb/irb1600-6-145", "kuka": "kuka/kr30-3", "ur": "ur/ur10e"}
 FILE = {"abb": "m.mod", "kuka": "m.src", "ur": "m.script"}
 FRAME = {
     "abb": (
-        "MODULE m\nVAR num s:={first};\nVAR num n:=0;\nPROC main()\nWHILE TRUE DO\n{body}"
-        "ENDWHILE\nENDPROC\nPROC other()\n{other}ENDPROC\nENDMODULE\n"
+        "MODULE m\nVAR num s:={first};\nVAR num n:=0;\nVAR bool b;\nPROC main()\n{loop}"
+        "ENDPROC\nPROC other()\n{other}ENDPROC\nPROC go(num k)\nMoveAbsJ [[k,0,0,0,30,0],"
+        "[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\nENDPROC\nENDMODULE\n"
     ),
     "kuka": (
-        "DEF m()\nDECL INT s,n\nBAS(#INITMOV,0)\ns={first}\nn=0\nLOOP\n{body}ENDLOOP\nEND\n"
+        "DEF m()\nDECL INT s,n\nDECL BOOL b\nBAS(#INITMOV,0)\ns={first}\nn=0\n{loop}END\n"
         "DEF other()\n{other}END\n"
+        "DEF go(k:IN)\nINT k\nDECL E6AXIS a\na={{A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}}\na.A1=k\n"
+        "PTP a\nEND\n"
     ),
-    "ur": "def m():\ndef other():\n{other}end\ns={first}\nn=0\nwhile True:\n{body}end\nend\n",
+    "ur": (
+        "def m():\ndef other():\n{other}end\ndef go(k):\nmovej([d2r(k),-1.57,1.57,-1.57,-1.57,0])\n"
+        "end\ns={first}\nn=0\n{loop}end\n"
+    ),
+}
+LOOP = {
+    "abb": "WHILE TRUE DO\n{0}ENDWHILE\n",
+    "kuka": "LOOP\n{0}ENDLOOP\n",
+    "ur": "while True:\n{0}end\n",
+}
+JUMP = {
+    "abb": "again:\n{0}GOTO again;\n",
+    "kuka": "AGAIN:\n{0}GOTO AGAIN\n",
 }
 MOVE = {
     "abb": "MoveAbsJ [[{0},0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\n",
@@ -32,24 +47,32 @@ MOVE = {
 IF = dict.fromkeys(("abb", "kuka"), "IF {0} THEN\n{1}ENDIF\n") | {"ur": "if {0}:\n{1}end\n"}
 SET = {"abb": "{0}:={1};\n", "kuka": "{0}={1}\n", "ur": "{0}={1}\n"}
 CALL = {"abb": "other;\n", "ur": "other()\n"}
+GO = {"abb": "go {0};\n", "kuka": "go({0})\n", "ur": "go({0})\n"}
+BOTH = dict.fromkeys(("abb", "kuka"), "AND") | {"ur": "and"}
 EQUAL = {"abb": "=", "kuka": "==", "ur": "=="}
 
 
 def step(language: str, at: int, next_: int, what: str) -> str:
     """What is done in a state: once in a pass, as a later state of the same pass is another's."""
     return IF[language].format(
-        f"n{EQUAL[language]}0 AND s{EQUAL[language]}{at}".replace(
-            "AND", "and" if language == "ur" else "AND"
-        ),
+        f"n{EQUAL[language]}0 {BOTH[language]} s{EQUAL[language]}{at}",
         what + SET[language].format("s", next_) + SET[language].format("n", 1),
     )
 
 
-def read(language: str, body: str, first: int = 0, other: str = "", cycles: int = 1) -> Program:
-    body = SET[language].format("n", 0) + body
+def read(
+    language: str,
+    body: str,
+    first: int = 0,
+    other: str = "",
+    cycles: int = 1,
+    before: str = "",
+    loop: dict[str, str] = LOOP,
+) -> Program:
+    body = before + loop[language].format(SET[language].format("n", 0) + body)
     other = other or SET[language].format("n", "n")
     return find_vendor(language).read(
-        FRAME[language].format(first=first, body=body, other=other),
+        FRAME[language].format(first=first, loop=body, other=other),
         FILE[language],
         robot=find_robot(ROBOTS[language]),
         answers=Answers(goes_on=True, cycles=cycles),
@@ -144,3 +167,74 @@ def test_as_many_passes_as_are_asked_for_are_read(language) -> None:
     body = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in states)
     program = read(language, body, cycles=5)
     assert places(program) == [1, 2, 1, 2, 1]
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_one_routine_for_all_states_is_called_for_each(language) -> None:
+    states = (0, 1), (1, 2), (2, 0)
+    body = "".join(step(language, a, b, GO[language].format(a + 1)) for a, b in states)
+    program = read(language, body)
+    assert places(program) == [1, 2, 3]
+    assert program.cycle is not None and program.cycle.length == 3
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_a_state_is_asked_by_what_is_made_of_it(language) -> None:
+    body = SET[language].format("b", f"s{EQUAL[language]}0")
+    first = MOVE[language].format(1) + SET[language].format("s", 1)
+    second = MOVE[language].format(2) + SET[language].format("s", 0)
+    no = f"{'NOT' if language != 'ur' else 'not'} b"
+    body += IF[language].format("b", first) + IF[language].format(no, second)
+    program = read(language, body)
+    assert places(program) == [1, 2]
+    assert program.cycle is not None and program.cycle.length == 2
+
+
+@pytest.mark.parametrize("language", JUMP)
+@given(count=st.integers(2, 5))
+def test_loops_by_jumps_have_states(language, count) -> None:
+    """Their first pass shows itself at its end: the cycle begins with the second."""
+    body = "".join(
+        step(language, k, (k + 1) % count, MOVE[language].format(k + 1)) for k in range(count)
+    )
+    program = read(language, body, loop=JUMP)
+    assert places(program) == [*range(1, count + 1), 1]
+    cycle = program.cycle
+    assert cycle is not None
+    assert (cycle.begin, cycle.end, cycle.length) == (1, count + 1, count)
+
+
+@pytest.mark.parametrize("language", JUMP)
+def test_loops_by_jumps_without_states_have_one_pass(language) -> None:
+    program = read(language, MOVE[language].format(1), loop=JUMP)
+    assert places(program) == [1]
+    assert program.cycle is not None and program.cycle.passes == 1
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_states_come_round_before_an_open_way_out_is_taken(language) -> None:
+    leave = {"abb": "EXIT;\n", "kuka": "HALT\n", "ur": "halt\n"}[language]
+    signal = {"abb": "di1=1", "kuka": "$IN[1]", "ur": "get_standard_digital_in(1)"}[language]
+    states = (0, 1), (1, 0)
+    body = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in states)
+    body += IF[language].format(signal, SET[language].format("s", 0))
+    body += IF[language].format(f"s{EQUAL[language]}9", leave)
+    program = read(language, body)
+    assert places(program) == [1, 2]
+    assert program.cycle is not None and program.cycle.length == 2
+
+
+def closing(program: Program) -> list[str]:
+    return [note.message for note in program.notes if "the first cycle of the loop" in note.message]
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+@given(data=st.data())
+def test_a_cycle_that_begins_elsewhere_than_the_next_is_said(language, data) -> None:
+    before = data.draw(st.integers(0, 3))
+    ways = data.draw(st.lists(st.integers(1, 3), min_size=1, max_size=3))
+    body = "".join(MOVE[language].format(way) for way in ways)
+    start = MOVE[language].format(before) if before else ""
+    program = read(language, body, before=start)
+    assert bool(closing(program)) == (before != ways[-1])
+    assert not closing(read(language, body, before=start, cycles=2))

@@ -61,6 +61,13 @@ class PresentPosition:
         """The work object that was moved in last."""
         return WORLD if self.last is None else self.last.work_object
 
+    @property
+    def supposed(self) -> str:
+        """What it depends on where the robot stands, if its last move is `Move.supposed`; empty
+        if on nothing."""
+        said = "" if self.last is None else self.last.supposed
+        return said and f"where the robot stands ({said})"
+
     def moved(self, move: Move, statement: Span) -> None:
         """The robot has driven to the target of a move."""
         self.last = move

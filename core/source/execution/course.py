@@ -6,7 +6,8 @@ Without an answer waits are satisfied at once, and branches and loops are decide
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from ...errors import InputError, Note, SourceError, Span
 from ...program.cycle import Cycle
 from ...program.question import Answer, Question, QuestionKind
 from .answers import TABLES, Answers, Fields, key, placed, stands_at, stands_in
+from .guard import Guard, Supposable
 from .scopes import alike
 from .sections import Sections
 from .streams import Stream
@@ -60,17 +62,42 @@ class Course:
         turned: how often an answer in turn was another one than that before it.
         cycle: the last pass of a loop that production runs in; None if there is none.
         sections: which routines and loops have left which statements.
+        supposed: what the data depend on that were read since the statement began and have the
+            values of a way that was chosen by rule; empty if on nothing.
+        guard: the way out that was not taken, as nobody decides it; None if there is none.
     """
 
     answers: Answers = field(default_factory=Answers)
     turned: int = 0
     cycle: Cycle | None = None
     sections: Sections = field(default_factory=Sections)
+    supposed: str = ""
+    guard: Guard | None = None
     _asked: set[tuple[str, str]] = field(default_factory=set)
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
     _questions: dict[tuple[str, str], Question] = field(default_factory=dict)
     _elements: dict[str, int] = field(default_factory=dict)
+
+    def suppose(self, reason: str) -> None:
+        """What is read now depends on a way that was chosen by rule; nothing if ``reason`` is
+        empty."""
+        self.supposed = self.supposed or reason
+
+    def sets(self, datum: Supposable, whole: bool = True) -> None:
+        """A datum, or a part of it, is given what the statement under way reads."""
+        datum.supposed = (not whole and datum.supposed) or self.supposed
+        if self.guard is not None:
+            self.guard.written.append(datum)
+
+    @contextmanager
+    def apart(self) -> Iterator[None]:
+        """What is read inside is nothing that the statement under way reads."""
+        outer, self.supposed = self.supposed, ""
+        try:
+            yield
+        finally:
+            self.supposed = outer
 
     def value(self, text: str, about: About | None = None) -> Answer | None:
         """The answer to a name or call as it stands in the program; None if there is none.

@@ -80,6 +80,17 @@ class Host(Protocol):
         """
         ...
 
+    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+        """Data and settings have values of a way that was chosen by rule: nothing is proven of
+        what reads them, until they are set anew.
+
+        Args:
+            names: of data, found from where the program stands, or in what was called from there.
+            settings: by the names of `Step.sets`.
+            reason: what they depend on.
+        """
+        ...
+
     def open_move(self, error: SourceError, span: Span) -> bool:
         """Whether the program goes on behind what cannot be carried out, which stays in it as a
         move that is open: from there on nobody knows where the robot stands."""

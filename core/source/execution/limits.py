@@ -75,12 +75,15 @@ class Meter:
         self.row = 0
         self.moves = 0
         self._places: set[tuple[str, int, int]] = set()
-        self._calls = 0
+        self._ways: set[tuple[int, str, int, int]] = set()
+        self._chains: dict[tuple[int, str, int, int], int] = {}  # of calls, by the one before
+        self._calls = [0]
 
     @property
     def driven(self) -> int:
-        """How many different statements have moved the robot."""
-        return len(self._places)
+        """How many different statements have moved the robot: one of a routine as many as the ways
+        by which it was called."""
+        return len(self._ways)
 
     @property
     def patience(self) -> int:
@@ -109,6 +112,7 @@ class Meter:
         self.moves += 1
         self.row = 0
         self._places.add((span.file, span.line, span.column))
+        self._ways.add((self._calls[-1], span.file, span.line, span.column))
         if self.moves - len(self._places) > self._limits.moves:
             raise _endless(f"{self._limits.moves} moves are executed again", span)
 
@@ -154,8 +158,9 @@ class Meter:
         Raises:
             SourceError: too many have called each other.
         """
-        self._calls += 1
-        if self._calls > self._limits.calls:
+        key = self._calls[-1], span.file, span.line, span.column
+        self._calls.append(self._chains.setdefault(key, len(self._chains) + 1))
+        if len(self._calls) > self._limits.calls + 1:
             raise SourceError(
                 f"{name}: {self._limits.calls} routines have called each other: a recursion "
                 "without end? Controllers do not go deeper either",
@@ -164,7 +169,7 @@ class Meter:
 
     def back(self) -> None:
         """A routine is left."""
-        self._calls -= 1
+        self._calls.pop()
 
 
 def _endless(what: str, span: Span) -> EndlessError:

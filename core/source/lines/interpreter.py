@@ -25,7 +25,7 @@ from ..execution.control_flow.steps import NOTHING
 from ..execution.course import Course
 from ..execution.limits import Meter
 from ..execution.outputs import Outputs
-from ..execution.provenance import Reads, Source
+from ..execution.provenance import MovePart, Reads, Source
 from ..execution.scopes import unknown_name
 from ..execution.transcript import MoveParts, Transcript
 from ..reading import ReadOptions
@@ -46,6 +46,7 @@ from .statements import (
     Kept,
     Label,
     Numbers,
+    Operand,
     Pause,
     Return,
     Set,
@@ -198,6 +199,10 @@ class _Interpreter:
         """None: what registers hold that others write is not known anyhow."""
         return []
 
+    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+        """See `core.source.execution.host.Host`."""
+        self._values.leave_supposed(names, reason)
+
     def open_move(self, error: SourceError, span: Span) -> bool:
         """See `core.source.execution.host.Host`."""
         if not self._out.leaves_open(error, span):
@@ -271,6 +276,7 @@ class _Interpreter:
 
     def _carry_out(self, statement: Statement) -> None:
         self.meter.statement(statement.span)
+        self.course.supposed = ""
         self._begin(statement)
         if isinstance(statement, Drive):
             try:
@@ -287,7 +293,7 @@ class _Interpreter:
         elif isinstance(statement, If):
             self._if(statement)
         elif isinstance(statement, Label):
-            self._flow.label(id(statement))
+            self._flow.label(id(statement), statement.name)
         elif isinstance(statement, Jump):
             raise _Jumped(statement)
         elif isinstance(statement, Call):
@@ -332,12 +338,13 @@ class _Interpreter:
         if isinstance(value, Unknown):
             span = statement.condition.span
             choice = self._flow.choose(span, value.reason, [statement.then], statement.otherwise)
-            if choice.block is not None:
-                self._body(choice.block)
-        elif value:
-            self._body(statement.then)
-        elif statement.otherwise is not None:
-            self._body(statement.otherwise)
+            block, supposed = choice.block, choice.supposed
+        else:
+            block = statement.then if value else statement.otherwise
+            supposed = self.course.supposed
+        with self._flow.supposing((statement.then, statement.otherwise), supposed):
+            if block is not None:
+                self._body(block)
 
     def _call(self, statement: Call) -> None:
         name = statement.routine
@@ -356,7 +363,9 @@ class _Interpreter:
             )
             raise SourceError(unknown_name("routine", name, known, offer), statement.span)
         for k, argument in enumerate(statement.arguments):
-            self._values.put(f"{self._grammar.argument}[{k + 1}]", self._values.value(argument))
+            with self.course.apart():
+                value = self._values.value(argument)
+                self._values.put(f"{self._grammar.argument}[{k + 1}]", value)
         self.meter.call(name, statement.span)
         self._out.called(statement.span)
         try:
@@ -403,7 +412,10 @@ class _Interpreter:
     def before(self) -> move.Move | None:
         """See `Situation`."""
         self._counted_on = True
-        return self.place if isinstance(self.place, move.Move) else None
+        if not isinstance(self.place, move.Move):
+            return None
+        self.course.suppose(self.place.supposed)
+        return self.place
 
     def number(self, datum: Expression) -> float:
         """See `Situation`."""
@@ -412,6 +424,7 @@ class _Interpreter:
     def setting(self, word: str, default: float) -> float:
         """See `Situation`."""
         value = self._values.registers.get(word, default)
+        self._values.suppose(word)
         if isinstance(value, Unknown):
             raise InputError(f"a move depends on {word}, and that on {value.reason}")
         return float(value)
@@ -431,9 +444,15 @@ class _Interpreter:
         """See `Situation`."""
         self._computed.update(parts)
 
+    def _operand(self, one: Operand | None) -> tuple[Numbers, MovePart] | None:
+        return None if one is None else self._data.operand(one)
+
     def _drive(self, statement: Drive) -> None:
-        operands = (statement.target, statement.speed, statement.zone, statement.via)
-        found = [None if one is None else self._data.operand(one) for one in operands]
+        with self.course.apart():  # the path does not depend on it
+            pace = self._operand(statement.speed)
+        others = (statement.target, statement.zone, statement.via)
+        goal, *shape = map(self._operand, others)
+        found = (goal, pace, *shape)
         numbers = [Numbers() if one is None else one[0] for one in found]
         self._computed.clear()
         self._counted_on = False
@@ -467,6 +486,8 @@ class _Interpreter:
             self._reads.by_expression(source, self._out.move_index)
         own = found[0][1].sources if found[0] else ()
         self._standing = (*own, *(self._standing if self._counted_on else ()))
+        if self.course.supposed:
+            move = replace(move, supposed=f"where it goes depends on {self.course.supposed}")
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
         self.place = move
         self._data.moved()

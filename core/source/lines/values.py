@@ -51,6 +51,13 @@ class Unknown:
     reason: str
 
 
+@dataclass(slots=True)
+class _Mark:
+    """What a register depends on, if a way has set it that was chosen by rule."""
+
+    supposed: str = ""
+
+
 class Snapshot:
     """Registers as they are now; see `core.source.execution.host.Snapshot`."""
 
@@ -96,6 +103,7 @@ class Values:
         self.outputs = outputs
         self.registers: dict[str, Value | Unknown] = {}
         self.sources: dict[str, Literal | None] = {}
+        self._marks: dict[str, _Mark] = {}
         self.kinds: dict[str, Any] = {}
 
     def all_of(self, datum: Datum) -> Numbers:
@@ -123,6 +131,7 @@ class Values:
         """Give a register a value; ``source``: the literal that states it."""
         self.registers[name] = value
         self.sources[name] = source
+        self._course.sets(self._mark(name))
 
     def put_all(self, name: str, numbers: Numbers, sources: Sequence[Literal | None] = ()) -> None:
         """Give a datum all its numbers."""
@@ -183,6 +192,7 @@ class Values:
         if name is None:
             return Unknown(f"{text}, whose number is not known")
         if name in self.registers and self._grammar.holds(datum.word):
+            self.suppose(name)
             return self.registers[name]
         if datum.word in self._grammar.outputs and not self._course.changing(name):
             held = self.outputs.value(name)
@@ -192,6 +202,20 @@ class Values:
         if answer is None:
             return Unknown(name)
         return _answered(answer, name, datum.span)
+
+    def suppose(self, name: str) -> None:
+        """The statement under way reads a register."""
+        mark = self._marks.get(name)
+        if mark is not None:
+            self._course.suppose(mark.supposed)
+
+    def leave_supposed(self, names: frozenset[str], reason: str) -> None:
+        """Registers have been set on a way that was chosen by rule."""
+        for mark in (self._mark(name) for name in names & self.registers.keys()):
+            mark.supposed = mark.supposed or reason
+
+    def _mark(self, name: str) -> _Mark:
+        return self._marks.setdefault(name, _Mark())
 
     def name(self, datum: Datum) -> str | None:
         """Of a datum, ``R[1]``, ``PR[1,2]``; None if its number is not known."""

@@ -219,6 +219,17 @@ def test_what_an_offset_makes_is_no_number_of_the_text() -> None:
         FANUC.patch(program.with_moves((moved,)), LR_MATE)
 
 
+@pytest.mark.parametrize("closing", [[], ["PR[1,1]=0"]])
+def test_what_a_branch_sets_that_nobody_decides_is_supposed(closing: list[str]) -> None:
+    lines = [f"PR[1,{k}]=0" for k in range(1, 7)]
+    lines += ["IF (DI[1]=ON) THEN", "PR[1,1]=10", "ENDIF", *closing]
+    lines += ["L P[1] 100mm/sec FINE Offset,PR[1]", "L P[1] 100mm/sec FINE"]
+    offset, plain = FANUC.read(text(*lines, positions=pose(1, 400)), "job.ls").moves
+    assert bool(offset.supposed) != bool(closing)
+    assert "DI[1]" in offset.supposed or closing
+    assert not plain.supposed
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

@@ -90,6 +90,7 @@ class RobotFunctions:
         b = self._frame(evaluator, frame, scope, None if tool is None else WORLD)
         record = self._asked(invoke, lambda: self.position.robtarget(a, b, None))
         if record is not None:
+            evaluator.course.suppose(self.position.supposed)
             return record
         raise SourceError(
             f"{invoke.text} takes the robot's present position, which is not known here: name the "
@@ -190,6 +191,7 @@ class RobotFunctions:
 
     def _told(self, evaluator: Evaluates, call: Call, ask: Callable[[], Record | None]) -> Value:
         record = self._asked(call, ask)
+        evaluator.course.suppose(self.position.supposed)
         return self._unknown(evaluator, call, None) if record is None else record
 
     @staticmethod

@@ -191,12 +191,15 @@ class MoveArguments:
             fixed = evaluator.fixed_value(named, type_, self.scope)
             if fixed is not None:
                 return fixed
+        use = f"the {kind} of {self.bound.text}"
+        self.run.course.supposed = ""
         found = evaluator.locate(expression, self.scope)
+        if type_ is not SPEEDDATA:
+            self._suppose(use, self.run.course.supposed)
         if isinstance(expression, Name) and not expression.path and found.cell is None:
             answer = evaluator.answers.ask(expression.span, type_, kind=QuestionKind.DATUM)
             if answer is not None:
                 found = Located(answer, None, None, type=type_)
-        use = f"the {kind} of {self.bound.text}"
         unknown = find_unknown(found.value) if found.open else None
         if unknown is not None:
             if isinstance(expression, Name) and found.cell is None and not expression.path:
@@ -272,8 +275,11 @@ class MoveArguments:
             return None
         use, evaluator = f"{self.bound.text} \\{name.upper()}", self.run.evaluator
         expression = self.bound.option(name)
+        self.run.course.supposed = ""
         value = evaluator.evaluate(expression, self.scope)
         unknown = find_unknown(value)
+        if name == "z":
+            self._suppose(use, self.run.course.supposed)
         if unknown is not None and unknown.lost:
             self.unsettled = self.unsettled or f"{use} depends on {unknown.reason}"
             return None

@@ -106,7 +106,8 @@ def read_move(
         raise
     common, speed_part, zone_part = reader.common()
     parts = MoveParts(bound.span, part, speed_part, zone_part, via_part)
-    lost = run.settings.lost_of((*_OF_ALL, *_OF_KIND.get(form.kind, ())))
+    own = _OF_KIND.get(form.kind, ())
+    lost = run.settings.lost_of((*_OF_ALL, *own))
     unsettled = f"how {bound.text} is driven depends on {lost}" if lost else reader.unsettled
     if arc is not None:
         assert via is not None and isinstance(target, PoseTarget)
@@ -114,8 +115,10 @@ def read_move(
     else:
         kind = MoveL if form.kind == "linear" else MoveJ
         move = kind(target, *common, events=events)
-    if unsettled or reader.supposed:
-        move = replace(move, unsettled=unsettled, supposed=reader.supposed)
+    setting = run.settings.supposed_of(own)
+    supposed = reader.supposed or (setting and f"the way of {bound.text} depends on {setting}")
+    if unsettled or supposed:
+        move = replace(move, unsettled=unsettled, supposed=supposed)
     return move, parts, reader.record
 
 

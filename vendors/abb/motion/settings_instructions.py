@@ -183,7 +183,7 @@ def _grip_load(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
 def _pdisp_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("DispFrame",), ())
     frame, open_ = _taken(run, bound.value(0), scope, POSE, "PDispSet")
-    run.settings.suppose("displacement", run.convert.pose(frame, bound.span), open_)
+    _suppose(run, "displacement", run.convert.pose(frame, bound.span), open_)
 
 
 def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -206,7 +206,7 @@ def _pdisp_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     displacement = Pose((shift[0], shift[1], shift[2]))
     if "rot" in bound.options:
         displacement = executed @ programmed.inverse()
-    run.settings.suppose("displacement", displacement, open_)
+    _suppose(run, "displacement", displacement, open_)
 
 
 def _point(run: SettingsRun, expression: Expression, scope: Scope) -> tuple[Pose, str]:
@@ -226,11 +226,20 @@ def _taken(
     return taken, "" if unknown is None else unknown.reason
 
 
+def _suppose(run: SettingsRun, name: str, value: object, open_: str) -> None:
+    """A setting that the path depends on.
+
+    Args:
+        open_: what the program does not say of it; empty for nothing.
+    """
+    run.settings.suppose(name, value, open_ or run.evaluator.course.supposed)
+
+
 def _eoffs_set(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     bound = bind(invoke, ("EAxOffs",), ())
     offsets, open_ = _taken(run, bound.value(0), scope, EXTJOINT, "EOffsSet")
     assert isinstance(offsets, tuple)
-    run.settings.suppose("offsets", offsets, open_)
+    _suppose(run, "offsets", offsets, open_)
 
 
 def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
@@ -245,7 +254,7 @@ def _eoffs_on(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:
     assert isinstance(programmed, tuple) and isinstance(executed, tuple)
     pairs = zip(executed[3], programmed[3], strict=True)
     offsets = tuple(e - p if max(abs(e), abs(p)) < UNUSED_AXIS else 0.0 for e, p in pairs)
-    run.settings.suppose("offsets", offsets, open_)
+    _suppose(run, "offsets", offsets, open_)
 
 
 def _world_acc_lim(run: SettingsRun, invoke: Invoke, scope: Scope) -> None:

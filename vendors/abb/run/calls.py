@@ -49,7 +49,9 @@ def pass_arguments(
     back: list[tuple[Variable, Name]] = []
     for parameter, argument in pairs:
         type_ = evaluator.data.type(parameter.type, scope.home, parameter.span)
-        cell = _parameter(evaluator, parameter, type_, argument, caller)
+        with evaluator.course.apart():
+            cell = _parameter(evaluator, parameter, type_, argument, caller)
+            cell.supposed = cell.supposed or evaluator.course.supposed
         scope.cells[parameter.name] = cell
         value = argument.value
         if parameter.mode != "in" and isinstance(value, Name) and value.path:

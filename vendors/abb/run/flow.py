@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from typing import Protocol
 
 from ....core.errors import SourceError
@@ -50,10 +51,17 @@ def run_if(run: Carrying, statement: If, scope: Scope) -> None:
             _choose(run, blocks, statement.otherwise, possible, branch.condition, value, scope)
             return
         if run.evaluator.truth(value, "IF", branch.condition.span):
-            run.run_block(branch.body, scope)
+            _run(run, branch.body, statement, scope)
             return
-    if statement.otherwise is not None:
-        run.run_block(statement.otherwise, scope)
+    _run(run, statement.otherwise, statement, scope)
+
+
+def _run(run: Carrying, block: Block | None, statement: If | Test, scope: Scope) -> None:
+    """Run the branch that the values of the data lead to."""
+    supposed = run.course.supposed
+    with run.flow.supposing(statement.blocks, supposed) if supposed else nullcontext():
+        if block is not None:
+            run.run_block(block, scope)
 
 
 def run_test(run: Carrying, test: Test, scope: Scope) -> None:
@@ -70,10 +78,9 @@ def run_test(run: Carrying, test: Test, scope: Scope) -> None:
                 _choose(run, blocks, test.otherwise, possible, test.subject, unknown, scope)
                 return
             if _equal(subject, value, expression):
-                run.run_block(case.body, scope)
+                _run(run, case.body, test, scope)
                 return
-    if test.otherwise is not None:
-        run.run_block(test.otherwise, scope)
+    _run(run, test.otherwise, test, scope)
 
 
 def _equal(subject: Value, value: Value, expression: Expression) -> bool:
@@ -119,13 +126,17 @@ def _choose(
         possible: for each branch and for ``otherwise``, whether it is not ruled out.
     """
     choice = run.flow.choose(condition.span, unknown.reason, blocks, otherwise, possible)
-    if choice.block is not None:
-        run.run_block(choice.block, scope)
+    with run.flow.supposing((choice.block, *choice.skipped), choice.supposed):
+        if choice.block is not None:
+            run.run_block(choice.block, scope)
 
 
 def run_for(run: Carrying, statement: For, scope: Scope) -> None:
     """``FOR``; without STEP the controller counts down where it has to."""
-    bounds = [run.evaluator.evaluate(e, scope) for e in (statement.start, statement.stop)]
+    bounds = [run.evaluator.evaluate(statement.start, scope)]
+    with run.course.apart():  # the counter of a pass is known all the same
+        bounds.append(run.evaluator.evaluate(statement.stop, scope))
+        ends = run.course.supposed
     given = 0.0 if statement.step is None else run.evaluator.evaluate(statement.step, scope)
     unknown = next((v for v in (*bounds, given) if isinstance(v, Unknown)), None)
     first, last, step = (_number_or_none(run, value, statement) for value in (*bounds, given))
@@ -134,6 +145,8 @@ def run_for(run: Carrying, statement: For, scope: Scope) -> None:
     if step == 0:
         raise SourceError("STEP is zero: the loop has no end", statement.span)
     counter = Variable(statement.name, NUM, constant=True)  # programs may only read it
+    counter.supposed = run.course.supposed
+    run.course.suppose(ends)
     inner = Scope(scope.where, {statement.name: counter}, scope, scope.home)
     reached = first
 

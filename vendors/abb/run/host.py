@@ -122,6 +122,14 @@ class RapidHost(ABC):
             *(n for n, c in found if c is None and self.evaluator.forget_elsewhere(n)),
         ]
 
+    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+        """See `core.source.execution.host.Host`."""
+        scopes = [*self._frames[-1].scope.outwards(), *self.data.scopes()]
+        for cell in [s.cells[n] for s in scopes for n in names if n in s.cells]:
+            if not cell.constant:
+                cell.supposed = cell.supposed or reason
+        self.settings.supposed |= dict.fromkeys(settings - self.settings.supposed.keys(), reason)
+
     def pause(self, text: str, span: Span) -> None:
         """The robot stands at a loop that waits."""
         self.out.pause(text, span)

@@ -186,6 +186,7 @@ class Interpreter(RapidHost):
 
     def _run_statement(self, statement: tree.Statement, scope: Scope) -> None:
         self.meter.statement(statement.span)
+        self.course.supposed = ""
         if isinstance(statement, tree.Invoke):
             self._invoke(statement, scope)
         elif isinstance(statement, tree.Assign):
@@ -211,7 +212,7 @@ class Interpreter(RapidHost):
         elif isinstance(statement, tree.LateInvoke):
             call_late(self, statement, scope)
         elif isinstance(statement, tree.Label):
-            self.flow.label(id(statement))
+            self.flow.label(id(statement), statement.name)
         elif isinstance(statement, tree.Keyword):
             self._keyword(statement, scope)
         elif isinstance(statement, tree.Unread):
@@ -321,7 +322,9 @@ class Interpreter(RapidHost):
 
     def call_function(self, routine: tree.Routine, call: tree.Call, scope: Scope) -> Value:
         reader, self.evaluator.reader = self.evaluator.reader, ELSEWHERE
+        supposed = self.course.supposed
         value = self.call(routine, call.arguments, scope, call.span)
+        self.course.supposed = supposed or self.course.supposed
         self.evaluator.reader = reader
         type_ = self.data.type(routine.returns or "", self.data.scope_of(routine).home, call.span)
         if value is None:
@@ -378,4 +381,6 @@ class Interpreter(RapidHost):
     def _hand_back(self, cell: Variable, target: tree.Name, caller: Scope) -> None:
         """What a routine made of an element or component that was passed by reference."""
         if cell.source is None and cell.value is not None:
-            self.evaluator.assign(target, cell.value, caller)
+            with self.course.apart():
+                self.course.suppose(cell.supposed)
+                self.evaluator.assign(target, cell.value, caller)

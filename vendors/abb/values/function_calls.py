@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from ....core.errors import SourceError, Span
+from ....core.source.execution.course import Course
 from ....core.source.execution.outputs import Outputs
 from ....core.source.text.files import SourceText
 from ..syntax.cursor import Cursor
@@ -30,6 +31,7 @@ class Evaluates(Protocol):
     """What functions need of the evaluator; see `Evaluator`."""
 
     data: Globals
+    course: Course
     answers: TypedAnswers
     outputs: Outputs
 

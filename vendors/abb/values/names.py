@@ -82,6 +82,7 @@ class Names(ABC):
         self.reads = Reads()
         self.reader = ELSEWHERE
         self.outputs = Outputs()
+        self.course = course
         self.answers = TypedAnswers(course, text_of)
         self._text_of = text_of
         self._host = host
@@ -236,6 +237,7 @@ class Names(ABC):
             cell.value = interpreted(value, cell.type, target.span)
             cell.source, cell.predefined = None, None
             cell.elements.clear()
+            self.course.sets(cell)
             return
         self._assign_part(cell, target, value, scope)
 
@@ -244,6 +246,7 @@ class Names(ABC):
         old = self._settled(cell)
         path, unknown = self._path(target, cell, scope)
         cell.predefined = None
+        self.course.sets(cell, whole=False)
         if unknown is not None:
             known = nominal(self.settle(cell))
             cell.value, cell.source = replace(unknown, key=cell.name, nominal=known), None
@@ -352,6 +355,8 @@ class Names(ABC):
         if not cell.present:
             message = f"the optional argument {cell.name} was not given"
             raise ProgramError(message, name.span, NUMBERS[NOT_PRESENT])
+        if cell.supposed:
+            self.course.suppose(cell.supposed)
         if is_open(cell):
             reason = f"'{name.text}', which {cell.writer} writes"
             known = None if name.path else nominal(self.settle(cell), cell.type)

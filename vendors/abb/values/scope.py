@@ -32,6 +32,7 @@ class Variable:
         elements: of an array: those written since it was last looked at as a whole. To make a new
             value of all for each of them would take a large array's time.
         writer, awaited: see `core.source.execution.suppose.SharedDatum`.
+        supposed: what its value depends on, if a way that was chosen by rule has set it.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Variable:
     elements: dict[tuple[int, ...], Value] = field(default_factory=dict)
     writer: str | None = None
     awaited: bool = False
+    supposed: str = ""
 
 
 @dataclass(eq=False, slots=True)

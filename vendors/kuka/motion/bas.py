@@ -119,6 +119,7 @@ class Basis:
         cell = self.data.system[name]
         cell.assigned = True
         cell.value = value
+        self.evaluator.course.sets(cell)
 
     def component(self, name: str, component: str, value: Value) -> None:
         """A component of a system variable."""

@@ -100,7 +100,10 @@ class Placements:
         return Placement(fixed, carried, _seen_from(carried.user, load))
 
     def _frame(self, name: str, span: Span) -> Struct:
-        value = self._system[name].value
+        cell = self._system[name]
+        value = cell.value
+        if cell.supposed:
+            self._supposed = self._supposed or f"{name.upper()} depends on {cell.supposed}"
         unknown = None if value is None else find_unknown(value)
         if unknown is not None:
             assert value is not None and not isinstance(value, Pending)

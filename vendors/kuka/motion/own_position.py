@@ -17,12 +17,14 @@ class OwnPosition:
 
     Args:
         move_index: index of the move that comes next.
+        suppose: is told what it depends on where the robot stands; see `Course.suppose`.
         asked: how often the program has asked.
     """
 
     position: Position
     placements: Placements
     move_index: Callable[[], int]
+    suppose: Callable[[str], None]
     asked: int = 0
 
     def __call__(self, kind: str, span: Span) -> Value:
@@ -33,5 +35,6 @@ class OwnPosition:
             value: Value = self.position.axes(span)
         else:
             value = self.position.pose(placement, span)
+        self.suppose(self.position.supposed or (placement.supposed if placement else ""))
         here = self.move_index(), placement
         return replace(value, here=here) if isinstance(value, Unknown) else value

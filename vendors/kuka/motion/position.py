@@ -65,6 +65,11 @@ class Position:
         self._left_out = span
 
     @property
+    def supposed(self) -> str:
+        """See `PresentPosition.supposed`."""
+        return self._commanded.supposed
+
+    @property
     def place(self) -> object:
         """Where the robot stands: another object after every move to another place."""
         return self._place

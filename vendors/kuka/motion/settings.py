@@ -83,8 +83,11 @@ class Settings:
     # ------------------------------------------------------------------------ values
 
     def _value(self, name: str) -> Value:
-        value = self._system[name].value
+        cell = self._system[name]
+        value = cell.value
         assert value is not None and not isinstance(value, Pending)
+        if cell.supposed:
+            self._opened = self._opened or f"{name.upper()} depends on {cell.supposed}"
         return value
 
     def number(self, name: str, span: Span) -> float:

@@ -77,7 +77,8 @@ class TargetExpressions:
         span = expression.span
         value, open_ = self._value(motion, expression, scope)
         if motion.word.endswith("_rel"):
-            return self._relative(motion, value, placement, via, span)
+            found = self._relative(motion, value, placement, via, span)
+            return replace(found, supposed=open_ or self.position.supposed)
         if is_axes(value):
             found = self.targets.joints(value, span)
         else:
@@ -85,6 +86,7 @@ class TargetExpressions:
         if open_:
             found = replace(found, supposed=open_)
         if found.filled:
+            found = replace(found, supposed=found.supposed or self.position.supposed)
             self._depends_on_last()
         elif isinstance(expression, Flat):
             self._literals[key] = found  # loops come by often
@@ -96,6 +98,8 @@ class TargetExpressions:
         """What stands as a target, and what it depends on that the text does not say."""
         span = expression.span
         self.evaluator.reader = self.transcript.move_index
+        course = self.evaluator.course
+        course.supposed = ""
         value = self.evaluator.evaluate(expression, scope)
         self.evaluator.reader = ELSEWHERE
         what = f"the target of {motion.word.upper()}"
@@ -111,7 +115,8 @@ class TargetExpressions:
             self.evaluator.check_known(value, what, span)
         if not isinstance(value, Struct):
             raise SourceError(f"{what} is a position or axis values, not {shown(value)}", span)
-        open_ = "" if unknown is None else f"{what} depends on {unknown.reason}"
+        reason = course.supposed if unknown is None else unknown.reason
+        open_ = reason and f"{what} depends on {reason}"
         if value.type == "":
             return self._typed(value, "e6axis" if is_axes(value) else "e6pos", span), open_
         if value.type in AXES or value.type in POSES:

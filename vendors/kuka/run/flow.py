@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 
 from ....core.errors import SourceError, Span
 from ....core.source.execution.control_flow import flow, loops
+from ....core.source.execution.course import Course
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.transcript import Notes
 from ..syntax.traversal import calls_in
@@ -57,6 +59,7 @@ class Flow:
         rules: decide what the text leaves open.
         waited: what holds when a loop has waited for others.
         notes: takes notes.
+        course: what was decided.
     """
 
     def __init__(
@@ -69,6 +72,7 @@ class Flow:
         rules: flow.Flow[Block],
         waited: Waited,
         notes: Notes,
+        course: Course,
     ) -> None:
         self._run_block = run_block
         self._evaluated = evaluated
@@ -78,6 +82,7 @@ class Flow:
         self._rules = rules
         self._waited = waited
         self._notes = notes
+        self._course = course
         self._jumps: dict[int, Block] = {}  # bodies of loops that a GOTO closes, by its id
 
     def run_body(self, routine: Routine, call: Call, scope: Scope) -> None:
@@ -96,9 +101,16 @@ class Flow:
         if isinstance(value, Unknown):
             self._choose(statement.condition.span, value, [statement.body], otherwise, scope)
         elif _truth(value, statement.condition, "IF"):
-            self._run_block(statement.body, scope)
-        elif otherwise is not None:
-            self._run_block(otherwise, scope)
+            self._run(statement.body, statement, scope)
+        else:
+            self._run(otherwise, statement, scope)
+
+    def _run(self, block: Block | None, statement: If | Switch, scope: Scope) -> None:
+        """Run the branch that the values of the data lead to."""
+        supposed = self._course.supposed
+        with self._rules.supposing(statement.blocks, supposed) if supposed else nullcontext():
+            if block is not None:
+                self._run_block(block, scope)
 
     def _choose(
         self,
@@ -111,8 +123,9 @@ class Flow:
     ) -> None:
         """Run the branch that is taken where nobody knows."""
         choice = self._rules.choose(span, unknown.reason, blocks, otherwise, possible)
-        if choice.block is not None:
-            self._run_block(choice.block, scope)
+        with self._rules.supposing((choice.block, *choice.skipped), choice.supposed):
+            if choice.block is not None:
+                self._run_block(choice.block, scope)
 
     def switch_(self, statement: Switch, scope: Scope) -> None:
         """``SWITCH``: of cases that nobody knows, a known one that fits is taken."""
@@ -126,7 +139,7 @@ class Flow:
                     if isinstance(equal, Unknown):
                         unknown, possible[number] = unknown or equal, True
                     elif equal:
-                        self._run_block(case.body, scope)
+                        self._run(case.body, statement, scope)
                         return
         if unknown is not None:
             first = next((c.values[0] for c in statement.cases if c.values), None)
@@ -136,8 +149,8 @@ class Flow:
             bodies = [case.body for case in statement.cases]
             may = [*possible, True]
             self._choose(statement.subject.span, unknown, bodies, statement.otherwise, scope, may)
-        elif statement.otherwise is not None:
-            self._run_block(statement.otherwise, scope)
+        else:
+            self._run(statement.otherwise, statement, scope)
 
     def _equal(self, subject: Value, expression: Expression, scope: Scope) -> bool | Unknown:
         value = (
@@ -204,7 +217,10 @@ class Flow:
         the step is added after every pass, whatever the body has made of it."""
         bounds = [statement.start, statement.stop]
         bounds += [] if statement.step is None else [statement.step]
-        values = [self._evaluated(bound, scope, statement.span) for bound in bounds]
+        values = [self._evaluated(statement.start, scope, statement.span)]
+        begins = self._course.supposed
+        values += [self._evaluated(bound, scope, statement.span) for bound in bounds[1:]]
+        ends, self._course.supposed = self._course.supposed, begins
         for value, bound in zip(values, bounds, strict=True):
             if find_unknown(value) is None and not _is_number(value):
                 raise SourceError(f"FOR counts numbers, not {shown(value)}", bound.span)
@@ -213,6 +229,7 @@ class Flow:
             raise SourceError("STEP is zero: the loop has no end", statement.span)
         unknown = next(filter(None, map(find_unknown, values)), None)
         self._evaluator.assign(statement.counter, unplaced(start), scope, statement.span)
+        self._course.supposed = ends
         run = self._pass(scope)
 
         def computed(symbol: str, left: Value, right: Value) -> Value:
@@ -352,7 +369,7 @@ class Flow:
 
     def label(self, statement: Label) -> None:
         """A label, which a jump back does not go over again."""
-        self._rules.label(id(statement))
+        self._rules.label(id(statement), statement.name)
 
     def goto_(self, statement: Goto, scope: Scope) -> None:
         """``GOTO``"""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import NoReturn
 
@@ -46,6 +46,7 @@ class KrlHost:
         position: Position,
         own_position: OwnPosition,
         transcript: Transcript,
+        system_changed: Callable[[], None],
     ) -> None:
         self.course = course
         self.meter = meter
@@ -55,6 +56,7 @@ class KrlHost:
         self._position = position
         self._own_position = own_position
         self._transcript = transcript
+        self._system_changed = system_changed
 
     @property
     def outputs(self) -> Outputs:
@@ -102,6 +104,13 @@ class KrlHost:
                 cell.value, parts = _written(value, cell.name, span)
                 left += parts
         return left
+
+    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+        """See `core.source.execution.host.Host`."""
+        for cell in self._data.named(names | settings, self._scopes[-1:]):
+            if not cell.constant:
+                cell.supposed = cell.supposed or reason
+        self._system_changed()
 
     def note_once(self, kind: str, message: str, span: Span) -> None:
         """A note, unless one of its kind was taken before."""

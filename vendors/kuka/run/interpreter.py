@@ -109,7 +109,9 @@ class Interpreter:
         position = Position(robot, options.start)
         self._placements = placements = Placements(data.system, course, notes.once)
         transcript.streaming = Streaming(robot, position.streamed, position.left_out)
-        own_position = OwnPosition(position, placements, lambda: transcript.move_index)
+        own_position = OwnPosition(
+            position, placements, lambda: transcript.move_index, course.suppose
+        )
         self._evaluator = evaluator = Evaluator(
             data, course, self._function, own_position, self._advance
         )
@@ -135,12 +137,20 @@ class Interpreter:
             self._system_changed,
         )
         self._host = host = KrlHost(
-            course, meter, data, evaluator.names, scopes, position, own_position, transcript
+            course,
+            meter,
+            data,
+            evaluator.names,
+            scopes,
+            position,
+            own_position,
+            transcript,
+            self._system_changed,
         )
         rules = Rules(analysis, host)
         waited = Waited(data, evaluator, course)
         self._flow = flow = Flow(
-            self.run_block, self._evaluated, evaluator, data, tree, rules, waited, notes
+            self.run_block, self._evaluated, evaluator, data, tree, rules, waited, notes, course
         )
         functions = {
             **InlineForms(basis, data).functions(),
@@ -271,6 +281,7 @@ class Interpreter:
 
     def _run_statement(self, statement: Statement, scope: Scope) -> None:
         self._meter.statement(statement.span)
+        self._course.supposed = ""
         if isinstance(statement, Continue):
             self._advance.passed = True
             return

@@ -64,6 +64,8 @@ class Routines:
         back = self._hand_over(routine, call, caller, scope)
         self._scopes.append(scope)
         value: Value | None = None
+        course = self._evaluator.course
+        supposed = course.supposed
         try:
             self._run_body(routine, call, scope)
         except Returned as returned:
@@ -75,6 +77,7 @@ class Routines:
         finally:
             self._scopes.pop()
             self._meter.back()
+        course.supposed = supposed or course.supposed
         self._hand_back(back, call, caller)
         return self._returned(routine, value, call)
 
@@ -105,7 +108,9 @@ class Routines:
             argument = call.arguments[index] if index < len(call.arguments) else None
             cell = Variable(parameter.text)
             if argument is not None:
-                cell.value = copied(self._evaluator.evaluate(argument, caller))
+                with self._evaluator.course.apart():
+                    cell.value = copied(self._evaluator.evaluate(argument, caller))
+                    cell.supposed = self._evaluator.course.supposed
             scope.cells[parameter.name] = cell
             if parameter.by_reference and isinstance(argument, Name):
                 back.append((cell, argument, self._evaluator.names.path(argument, caller)))
@@ -118,4 +123,6 @@ class Routines:
         for cell, datum, path in back:
             value = cell.value
             if cell.assigned and value is not None and not isinstance(value, Pending):
-                self._evaluator.assign(datum, value, caller, call.span, path)
+                with self._evaluator.course.apart():
+                    self._evaluator.course.suppose(cell.supposed)
+                    self._evaluator.assign(datum, value, caller, call.span, path)

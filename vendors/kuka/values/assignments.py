@@ -54,6 +54,7 @@ class Assignment:
         cell.awaited = False
         label = None if self._data.is_system(target.name) else spelled(cell.name, path)
         path = tuple(step for step in path if step != ())
+        self._names.course.sets(cell, whole=not path)
         if not path:
             self._assign_whole(cell, value, label, span)
             return cell

@@ -128,6 +128,8 @@ class Names:
             return self.answers.undeclared(node, self.path(node, scope))
         if cell.signal is not None:
             return self._signal(node, cell, scope)
+        if cell.supposed:
+            self.course.suppose(cell.supposed)
         path = self.path(node, scope) if node.path else ()
         if self.course.answers.sequences and self.course.changing(spelled(node.text, path)):
             return self.answers.undeclared(node, path)

@@ -25,6 +25,7 @@ class Variable:
         assigned: the program has assigned to it.
         found: how an interrupt's routine puts down in it where the robot is: ``pose`` or ``axes``.
         writer, awaited: see `core.source.execution.suppose.SharedDatum`.
+        supposed: what its value depends on, if a way that was chosen by rule has set it.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Variable:
     found: str | None = None
     writer: str | None = None
     awaited: bool = False
+    supposed: str = ""
 
 
 @dataclass(eq=False)

@@ -175,6 +175,7 @@ def _move(run: JogsRun, jog: Jog, zone: Zone = FINE) -> Move:
     vector = np.array(jog.vector)
     a, turning = jog.accelerations
     common = zone, run.settings.tool, run.position.base
+    supposed = run.course.supposed or run.position.supposed or run.settings.supposed
     if isinstance(jog.start, Pose):
         line, turn = (float(np.linalg.norm(part)) for part in (vector[:3], vector[3:]))
         share, turned = _share(line, a, jog.seconds), _share(turn, turning, jog.seconds)
@@ -188,12 +189,12 @@ def _move(run: JogsRun, jog: Jog, zone: Zone = FINE) -> Move:
             reorientation=turn * turned or None,
             reorientation_acceleration=turning if turn else None,
         )
-        return MoveL(target, speed, *common)
+        return MoveL(target, speed, *common, supposed=supposed)
     leading = float(np.max(np.abs(vector)))
     share = _share(leading, a, jog.seconds)
     ends = np.array(jog.start) + vector * share * jog.seconds
     speed = Speed(joint=leading * share, joint_acceleration=a)
-    return MoveJ(JointTarget(tuple(ends.tolist())), speed, *common)
+    return MoveJ(JointTarget(tuple(ends.tolist())), speed, *common, supposed=supposed)
 
 
 def _share(speed: float, acceleration: float, seconds: float) -> float:

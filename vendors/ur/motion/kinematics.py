@@ -72,6 +72,7 @@ def _pose(run: KinematicsRun, call: Call, tool: Tool) -> Located:
     if told is not None:
         return Located(_as_pose(told))
     pose = run.position.pose(tool, f"{call.name}()", run.texts.span_of(call))
+    run.course.suppose(run.position.supposed or run.settings.supposed)
     return Located(_listed(run, call, pose) if isinstance(pose, Unknown) else value_of(pose))
 
 
@@ -93,12 +94,14 @@ def _unless_told(ask: Callable[[KinematicsRun, Call, Scope], Value]) -> Ask:
 
 
 def _joints(run: KinematicsRun, call: Call, scope: Scope) -> Value:
+    run.course.suppose(run.position.supposed)
     return run.position.joints(f"{call.name}()", run.texts.span_of(call))
 
 
 def _tcp_offset(run: KinematicsRun, call: Call, scope: Scope) -> Located:
     if not run.settings.stated:
         return Located(answer(run, call, "the TCP of the installation"))
+    run.course.suppose(run.settings.supposed)
     return Located(value_of(run.settings.tcp))
 
 

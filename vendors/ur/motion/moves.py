@@ -182,6 +182,7 @@ class _MoveReader:
         settings = self.run.settings
         if settings.unknown is not None:
             self._taken("the TCP of the move", settings.unknown, "the one before")
+        self._suppose("the TCP of the move", settings.supposed)
         if settings.load_lost is not None:
             lost = self._refusal("the payload of the move", settings.load_lost, self.span)
             self.unsettled = lost.message
@@ -202,9 +203,9 @@ class _MoveReader:
         if self._is_inverse(expression):
             assert isinstance(expression, Call)
             return self._inverse(expression, span)
-        found = locate(self.run, expression, self.scope)
-        value = found.value
         name = argument.name or "target"
+        found = self._located(expression, f"the {name} of {self.call.name}")
+        value = found.value
         used_as(self.run, expression, value, "goal")
         if isinstance(value, PendingInverse):
             return self._solution(value), MovePart(span)
@@ -223,6 +224,19 @@ class _MoveReader:
             )
         return JointTarget(tuple(values), name=found.name), part
 
+    def _located(self, expression: Expression, what: str) -> Located:
+        """A value that the path of the move depends on."""
+        self.run.course.supposed = ""
+        found = locate(self.run, expression, self.scope)
+        self._suppose(what, self.run.course.supposed)
+        return found
+
+    def _suppose(self, what: str, reason: str) -> None:
+        """What the path of the move depends on is taken for something; nothing if ``reason`` is
+        empty."""
+        if reason:
+            self.supposed = self.supposed or f"{what} depends on {reason}"
+
     def _is_inverse(self, expression: Expression) -> bool:
         """Whether the target is ``get_inverse_kin(…)`` itself, whose pose can be kept."""
         return (
@@ -234,18 +248,20 @@ class _MoveReader:
     def _inverse(self, call: Call, span: Span) -> tuple[Target, MovePart]:
         given = bind(call, INVERSE_PARAMETERS, 1, self.texts)
         if "tcp" in given:
+            self.run.course.supposed = ""
             found = solution(self.run, call, self.scope)
+            self._suppose(f"the target of {self.call.name}", self.run.course.supposed)
             if isinstance(found, Unknown):
                 raise self._refusal(f"the target of {self.call.name}", found, span)
             return self._solution(found), MovePart(span)
-        goal = locate(self.run, given["x"].value, self.scope)
+        goal = self._located(given["x"].value, f"the pose of {INVERSE}")
         used_as(self.run, given["x"].value, goal.value, "pose")
         value = self._known(goal.value, f"the pose of {INVERSE}", span)
         pose = self._pose(value, given["x"].value)
         sources = covering(goal.sources if value is goal.value else (), _SIX)
         near = None
         if "qnear" in given:
-            near = locate(self.run, given["qnear"].value, self.scope)
+            near = self._located(given["qnear"].value, "qnear")
         unknown = None if near is None else find_unknown(near.value)
         here = near is None or self.run.position.is_here(near.value)
         if unknown is not None and not here:
@@ -299,7 +315,7 @@ class _MoveReader:
         if unknown.damaged:
             raise self._refusal(what, unknown, self.span)
         if alters:
-            self.supposed = self.supposed or f"{what} depends on {unknown.reason}"
+            self._suppose(what, unknown.reason)
         self.run.out.notes.count(
             f"{what} depends on {unknown.reason}, which the text does not say: {taken} is taken; "
             f"answer it in a file ({spelt('answers')}), [values]; `flyby ask` lists its name",
@@ -321,7 +337,10 @@ class _MoveReader:
         argument = self.given.get(name)
         if argument is None:
             return self.signature.others[name], Located(None)
+        self.run.course.supposed = ""
         found = locate(self.run, argument.value, self.scope)
+        if name not in _SPEED:
+            self._suppose(f"'{name}' of {self.call.name}", self.run.course.supposed)
         if not is_number(found.value):
             span = self.texts.span_of(argument)
             unknown = find_unknown(found.value)

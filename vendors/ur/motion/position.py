@@ -48,6 +48,11 @@ class Position:
         return self._commanded.asked
 
     @property
+    def supposed(self) -> str:
+        """See `PresentPosition.supposed`."""
+        return self._commanded.supposed
+
+    @property
     def has_robot(self) -> bool:
         """Whether kinematics can be asked."""
         return self._commanded.robot is not None

@@ -47,6 +47,7 @@ class Settings:
         inertia: its inertia about the centre, Ixx, Iyy, Izz, Ixy, Ixz, Iyz, kg m².
         stated: whether the program has set the TCP.
         unknown: what the TCP depends on, if that is not known.
+        supposed: what the TCP depends on, if a way that was chosen by rule has set it.
         load_lost: the damaged line that would have set the payload; None if there is none.
     """
 
@@ -57,6 +58,7 @@ class Settings:
     inertia: tuple[float, ...] = (0.0,) * 6
     stated: bool = False
     unknown: Unknown | None = None
+    supposed: str = ""
     load_lost: Unknown | None = None
 
     @cached_property
@@ -152,6 +154,7 @@ def _set_tcp(settings: Settings, values: dict[str, Value]) -> Settings:
         name=name if isinstance(name, str) and name else DEFAULT_NAME,
         stated=True,
         unknown=None,
+        supposed="",
     )
 
 
@@ -217,6 +220,8 @@ def change(run: SettingsRun, call: Call, scope: Scope) -> Located:
         return NOTHING
     try:
         run.settings = made(run.settings, values)
+        if call.name == "set_tcp" and run.course.supposed:
+            run.settings = replace(run.settings, supposed=run.course.supposed)
         _ = run.settings.tool
     except (ValueFault, InputError) as error:
         raise run.texts.stop_at(f"{call.name}: {error}", call) from None

@@ -135,6 +135,7 @@ def enter(run: CallsRun, function: Function, node: Call, caller: Scope) -> Locat
     frame = Frame(scope)
     run.frames.append(frame)
     found = NOTHING
+    supposed = run.course.supposed
     try:
         scope.define(define.body)
         with run.flow.routine(define.name, span):
@@ -145,6 +146,7 @@ def enter(run: CallsRun, function: Function, node: Call, caller: Scope) -> Locat
         run.frames.pop()
         run.meter.back()
         run.statement, run.literals.reader = statement, reader
+    run.course.supposed = supposed or run.course.supposed
     return found if frame.open is None else Located(frame.open)
 
 
@@ -156,17 +158,19 @@ def _pass_arguments(
     given = bind(node, names, 0, run.texts)
     for parameter in define.parameters:
         argument = given.get(parameter.name)
-        if argument is not None:
-            found = locate(run, argument.value, caller)
-        elif parameter.default is not None:
-            found = locate(run, parameter.default, function.scope)
-        else:
-            raise run.texts.error_at(
-                f"{node.name} needs the argument '{parameter.name}': "
-                f"{node.name}({', '.join(names)})",
-                node,
-            )
-        scope.cells[parameter.name] = Variable(found.value, found.sources)
+        with run.course.apart():
+            if argument is not None:
+                found = locate(run, argument.value, caller)
+            elif parameter.default is not None:
+                found = locate(run, parameter.default, function.scope)
+            else:
+                raise run.texts.error_at(
+                    f"{node.name} needs the argument '{parameter.name}': "
+                    f"{node.name}({', '.join(names)})",
+                    node,
+                )
+            cell = Variable(found.value, found.sources, supposed=run.course.supposed)
+        scope.cells[parameter.name] = cell
 
 
 # ------------------------------------------------------------ functions of the controller

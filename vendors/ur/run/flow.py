@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import Protocol
 
 from ....core.program.move import Opaque
@@ -62,10 +63,17 @@ def branch(run: FlowRun, statement: If, scope: Scope) -> None:
             _undecided(run, statement, index, fulfilled, scope)
             return
         if fulfilled:
-            run.run_block(one.body, scope)
+            _run(run, one.body, statement, scope)
             return
-    if statement.otherwise is not None:
-        run.run_block(statement.otherwise, scope)
+    _run(run, statement.otherwise, statement, scope)
+
+
+def _run(run: FlowRun, block: Block | None, statement: If, scope: Scope) -> None:
+    """Run the branch that the values of the variables lead to."""
+    supposed = run.course.supposed
+    with run.flow.supposing(statement.blocks, supposed) if supposed else nullcontext():
+        if block is not None:
+            run.run_block(block, scope)
 
 
 def _undecided(run: FlowRun, statement: If, first: int, reason: Unknown, scope: Scope) -> None:
@@ -83,8 +91,9 @@ def _undecided(run: FlowRun, statement: If, first: int, reason: Unknown, scope: 
         for name in assigned(body):
             if scope.find(name) is None:
                 scope.own(name).value = reason
-    if choice.block is not None:
-        run.run_block(choice.block, scope)
+    with run.flow.supposing((choice.block, *choice.skipped), choice.supposed):
+        if choice.block is not None:
+            run.run_block(choice.block, scope)
 
 
 def loop(run: FlowRun, statement: While, scope: Scope) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any, NoReturn
 from weakref import proxy
 
@@ -124,6 +125,7 @@ class Interpreter:
         for statement in block:
             self.meter.statement(self.texts.span_of(statement))
             self.statement = statement
+            self.course.supposed = ""
             _STATEMENTS[type(statement)](self, statement, scope)
 
     def finish(self, message: str, span: Span) -> NoReturn:
@@ -155,6 +157,14 @@ class Interpreter:
     def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
         """See `core.source.execution.host.Host`: a script's data are written by nobody else."""
         return []
+
+    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+        """See `core.source.execution.host.Host`."""
+        scope = self.frames[-1].scope if self.frames else self.root
+        for cell in filter(None, map(scope.find, sorted(names))):
+            cell.supposed = cell.supposed or reason
+        if "set_tcp" in settings and not self.settings.supposed:
+            self.settings = replace(self.settings, supposed=reason)
 
     def pause(self, text: str, span: Span) -> None:
         """The robot stands at a loop that waits."""

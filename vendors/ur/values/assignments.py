@@ -25,6 +25,7 @@ def store(run: Evaluation, target: Place, found: Located, scope: Scope, storage:
     if isinstance(target, Name):
         cell = _cell(target.text, scope, storage)
         cell.value = found.value
+        run.course.sets(cell)
         cell.sources = _named(found.sources, target.text)
         return
     base = _place(run, target.base)

@@ -128,6 +128,8 @@ def _locate_name(run: Evaluation, name: tree.Name, scope: Scope) -> Located:
         return Located(_undeclared(run, name))
     if cell.writer is not None:
         return Located(_open(run, name, f"'{name.text}', which thread {cell.writer} writes"))
+    if cell.supposed:
+        run.course.suppose(cell.supposed)
     value = cell.value
     if isinstance(value, Unknown):
         answer = run.course.value(name.text)

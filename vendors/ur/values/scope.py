@@ -28,11 +28,13 @@ class Variable:
     Args:
         sources: where in the text the value stands.
         writer: name of a running thread that writes it, so that nobody knows its value.
+        supposed: what its value depends on, if a way that was chosen by rule has set it.
     """
 
     value: Value = None
     sources: Sources = ()
     writer: str | None = None
+    supposed: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ It is asked only where a run meets a condition that is not known, or a loop; the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Generic, NamedTuple, TypeVar
 
 from .steps import NOTHING, Block, Exit, Step, Tree
@@ -76,16 +76,27 @@ class Analysis(Generic[Block]):
             step: what its words say: settings and routines that it names, a datum that it writes.
         """
         called = step.calls
-        sets = (one.sets for body in called for one in self._reached(body, _NONE_LEFT_OUT))
         return Lost(
             step.moves or any(map(self.moves, called)),
-            step.sets.union(*sets),
+            step.sets.union(*map(self.settings, called)),
             step.writes.union(*map(self.written, called)),
         )
 
     def move_count(self, block: Block) -> int:
         """How many statements in a block, and in the routines that it calls, move the robot."""
         return sum(step.moves for step in self._reached(block, _NONE_LEFT_OUT))
+
+    def way_count(self, block: Block) -> int:
+        """The same, with those of a routine once for each call."""
+
+        def find() -> int:
+            steps = self.steps(block)
+            inside = ((*step.inner, *step.calls) for step in steps)
+            return sum(step.moves for step in steps) + sum(
+                self.way_count(one) for blocks in inside for one in blocks
+            )
+
+        return self._once("ways", block, 0, find)
 
     def leads_to(self, block: Block) -> Exit | None:
         """Where a block leads in any case; None if the program may go on behind it."""
@@ -122,6 +133,14 @@ class Analysis(Generic[Block]):
         if key not in self._written:
             self._written[key] = find()
         return self._written[key]
+
+    def settings(self, block: Block) -> frozenset[str]:
+        """Names of the settings that a block, and what it calls, may change."""
+
+        def find() -> frozenset[str]:
+            return NOTHING.union(*(step.sets for step in self._reached(block, _NONE_LEFT_OUT)))
+
+        return self._once("settings", block, NOTHING, find)
 
     def written_apart(self, body: Block) -> list[tuple[Block, frozenset[str]]]:
         """Names of the data that a routine's body may write, and apart from it those that each
@@ -203,28 +222,24 @@ class Analysis(Generic[Block]):
                     asked = (self._reached(body, _NONE_LEFT_OUT) for body in step.calls)
                     own = (one.reads | one.made_of for steps in asked for one in steps)
                     names = names.union(step.reads, *own)
-            while True:
-                made = (step.made_of for step in inside if not names.isdisjoint(step.writes))
-                more = names.union(*made)
-                if more == names:
-                    return names
-                names = more
+            return _made_of(names, inside)
 
         return self._once("guards", block, NOTHING, find)
 
     def choosing(self, block: Block) -> frozenset[str]:
         """Names of the data that conditions in a block, or in what it calls, read to choose between
-        ways of which one at least moves the robot. Conditions of loops do not count, nor data that
-        the block sets before it reads them."""
+        ways of which one at least moves the robot, and of those that these are made of. Conditions
+        of loops do not count, nor data that the block sets before it reads them."""
 
         def find() -> frozenset[str]:
-            reached = self._reached(block, _NONE_LEFT_OUT)
+            reached = [*self._reached(block, _NONE_LEFT_OUT)]
             steps = (s for s in reached if not s.loop and any(map(self.moves, s.inner)))
-            return NOTHING.union(*(step.reads for step in steps)) - self._set_first(block)
+            names = NOTHING.union(*(step.reads for step in steps))
+            return _made_of(names, reached) - self.set_first(block)
 
         return self._once("choosing", block, NOTHING, find)
 
-    def _set_first(self, block: Block) -> frozenset[str]:
+    def set_first(self, block: Block) -> frozenset[str]:
         """Names of the data that a block sets in any case, before it reads them."""
         read: set[str] = set()
         found: set[str] = set()
@@ -339,3 +354,13 @@ class Analysis(Generic[Block]):
                 writes = self.written(body)
                 if writes:
                     yield Step(writes=writes, calls=(body,)), around
+
+
+def _made_of(names: frozenset[str], steps: Collection[Step[Block]]) -> frozenset[str]:
+    """Names of data, and of those that these are made of in some statements."""
+    while True:
+        made = (step.made_of for step in steps if not names.isdisjoint(step.writes))
+        more = names.union(*made)
+        if more == names:
+            return names
+        names = more

@@ -19,10 +19,12 @@ class TakenBranch(Generic[Block]):
     Args:
         block: None for nothing.
         skipped: branches that could have been taken as well.
+        supposed: what depends on it, for messages; empty where the user says that it is taken.
     """
 
     block: Block | None
     skipped: tuple[Block, ...]
+    supposed: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +125,8 @@ class Branches(Generic[Block]):
             self._skipped[id(block)] = Skip(
                 block, reason, self.skips, nesting.routine, nesting.loop
             )
-        return TakenBranch(chosen, skipped)
+        supposed = "" if answered else f"the branch at {span.file}:{span.line} ({reason})"
+        return TakenBranch(chosen, skipped, supposed)
 
     def _rule(
         self, blocks: Sequence[Block], otherwise: Block | None, may: Sequence[bool]

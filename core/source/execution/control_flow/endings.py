@@ -6,19 +6,15 @@ import math
 from collections.abc import Callable
 from typing import Generic, NoReturn
 
-from ....display import counted
 from ....door import spelt
 from ....errors import SourceError, Span
-from ....program.cycle import Cycle
 from ..host import Host
 from .analysis import Analysis
 from .branches import Branches, Skip
-from .loops import Loop, Passes, Start
+from .loops import Head, Loop, Passes, Start
+from .states import FOLLOWED, States, named
 from .steps import NOTHING, PLACE, Block, Exit
 
-FOLLOWED = 100
-"""Passes of a loop without a condition that gets on and moves the robot, after which a way out is
-taken that nobody can decide."""
 FOLLOWED_UNMOVED = 1000
 """The same where it has a condition, which may well end it, or does not move the robot."""
 FORESEEN = 100
@@ -45,6 +41,7 @@ class Endings(Generic[Block]):
         self._analysis = analysis
         self._host = host
         self._branches = branches
+        self._states = States(analysis, host)
         self._long: set[Span] = set()
 
     def start(self) -> Start:
@@ -52,7 +49,8 @@ class Endings(Generic[Block]):
         host = self._host
         meter = host.meter
         asked = host.outputs.mark()
-        return Start(self._branches.skips, asked, meter.moves, meter.row, meter.driven)
+        skips = self._branches.skips
+        return Start(skips, asked, meter.moves, meter.row, meter.driven, host.place)
 
     def most(self, passes: Passes[Block], reason: str) -> int:
         """How often a loop runs whose condition is not known; asked once in an execution."""
@@ -60,18 +58,24 @@ class Endings(Generic[Block]):
             loop = passes.loop
             moving = self._analysis.moves(loop.body)
             passes.most = self._host.course.passes(loop.span, reason, moving, passes.count)
+            self._suppose(passes, reason)
             if not passes.most and not moving:
                 self._host.pause(loop.words, loop.span)
         return passes.most
 
+    def _suppose(self, passes: Passes[Block], reason: str) -> None:
+        """Nobody says how often a loop runs."""
+        span = passes.loop.span
+        if self._host.course.answered_passes(span) is None:
+            passes.suppose(f"the loop at {span.file}:{span.line} ({reason})")
+
     def look(self, passes: Passes[Block]) -> None:
         """A pass begins: remember what decides when the loop ends, as it is now."""
         host, loop = self._host, passes.loop
-        passes.begun.append(host.meter.moves)
+        passes.heads.append(Head(host.meter.moves, host.meter.driven, host.place))
         if self._runs_out(passes):
             return
         passes.mark = host.outputs.mark()
-        self._look_at_state(passes)
         if not passes.looked or passes.skips != self._branches.skips:
             passes.watched = self._deciding(passes)
             passes.written = self._analysis.written(loop.body) | loop.writes
@@ -86,17 +90,7 @@ class Endings(Generic[Block]):
         passes.asked = host.position_asked
         passes.place = host.place
         passes.held = host.outputs.held()
-
-    def _look_at_state(self, passes: Passes[Block]) -> None:
-        """A pass begins: remember what decides which of its ways the robot is driven."""
-        host, loop = self._host, passes.loop
-        if loop.counts or passes.count >= FOLLOWED:
-            return
-        written = self._analysis.written(loop.body)
-        names = self._analysis.choosing(loop.body) & written
-        if names:
-            state = host.snapshot(names, written)
-            passes.heads.append((host.meter.moves, host.meter.driven, state))
+        self._states.look(passes)
 
     def _has_moved(self, passes: Passes[Block]) -> bool:
         """Whether a loop has moved the robot since it began."""
@@ -193,17 +187,19 @@ class Endings(Generic[Block]):
         skip = self._way_out(passes)
         if skip is not None:
             followed = FOLLOWED if moving and loop.endless else FOLLOWED_UNMOVED
-            if gets_on and answer is None and passes.count < followed:
+            round_ = moved and loop.endless and self._states.come_round(passes)
+            if gets_on and answer is None and passes.count < followed and not round_:
                 return False
             if passes.most is None:
                 driven = passes.count
                 if answer is None and moved and loop.endless:
                     driven = max(driven, host.course.answers.cycles)
                 passes.most = host.course.passes(loop.span, skip.reason, True, driven, leaves=True)
+                self._suppose(passes, skip.reason)
             if passes.count < passes.most:
                 return False
             if moved and loop.endless:
-                self._cycle(passes)
+                self._states.tell_cycle(passes)
             self._leave_by(skip, loop, run)
             if not self._leaves(skip, loop):
                 loop.ended()
@@ -221,7 +217,7 @@ class Endings(Generic[Block]):
             return False
         if moving and self._may_come_to_move(passes):
             return False
-        self._satisfy(loop, moving, run)
+        self._satisfy(passes, moving, run)
         return True
 
     def _runs_out(self, passes: Passes[Block]) -> bool:
@@ -284,7 +280,7 @@ class Endings(Generic[Block]):
             loop.span,
         )
         passes.count = 0
-        passes.begun.clear()
+        passes.heads.clear()
         host.meter.row = passes.start.statements
         return True
 
@@ -304,7 +300,7 @@ class Endings(Generic[Block]):
         loop.ended()
         why = host.course.answers.cut_short(loop.span)
         if why is not None:
-            self._cycle(passes)
+            self._states.tell_cycle(passes)
             if not why:
                 self._end(passes, f"({loop.words})")
             host.open_move(SourceError(why, loop.span), loop.span)
@@ -326,13 +322,14 @@ class Endings(Generic[Block]):
         if self._leave_motion_to_others(passes):
             return False
         self._long.add(loop.span)
+        self._suppose(passes, "it passes time")
         meter.row = passes.start.statements
         loop.ended()
         made = self._analysis.written(loop.body) - loop.reads - loop.writes
         went = f"the loop ({loop.words}) has run {passes.count} times without a move and goes on"
         if passes.left is not None and passes.left != math.inf and made:
             # What it would have made of them is not what it has made of them so far.
-            message = f"{went} for {passes.left:.6g} more: what it makes of {_named(made)} is lost"
+            message = f"{went} for {passes.left:.6g} more: what it makes of {named(made)} is lost"
             if host.open_move(SourceError(message, loop.span), loop.span):
                 return True
         host.note_once(
@@ -342,19 +339,9 @@ class Endings(Generic[Block]):
         )
         return True
 
-    def _cycle(self, passes: Passes[Block]) -> None:
-        """The last pass of a loop that production runs in: what a cycle is."""
-        begun = passes.begun[-1] if passes.count > 1 else passes.start.moves
-        end, length = self._host.meter.moves, 1
-        if len(passes.heads) == passes.count > 1:
-            first = passes.last_round()
-            if first is not None:
-                begun, length = passes.heads[first][0], passes.count - first
-        if end > begun:
-            self._host.course.cycle = Cycle(begun, end, passes.count, passes.loop.span, length)
-
-    def _satisfy(self, loop: Loop[Block], moving: bool, run: Callable[[Block], bool]) -> None:
+    def _satisfy(self, passes: Passes[Block], moving: bool, run: Callable[[Block], bool]) -> None:
         """Leave a loop that waits for others."""
+        loop = passes.loop
         what = f"{_UNMOVED}, and only waits" if moving else "only waits"
         self._host.note_once(
             f"waits {loop.span.file}:{loop.span.start}",
@@ -363,6 +350,7 @@ class Endings(Generic[Block]):
             loop.span,
         )
         self._host.pause(loop.words, loop.span)
+        self._suppose(passes, "it waits for others")
         way = self._known_way(loop.body) if loop.endless else None
         if way is not None:
             run(way)
@@ -409,13 +397,9 @@ class Endings(Generic[Block]):
         cycles = self._host.course.answers.cycles if moving and self._has_moved(passes) else 1
         if passes.count < (answer or cycles):
             return
-        if (
-            answer is None
-            and cycles == 1
-            and passes.is_under_way(self._host.meter, self._analysis.move_count(passes.loop.body))
-        ):
+        if answer is None and cycles == 1 and self._states.are_under_way(passes):
             return
-        self._cycle(passes)
+        self._states.tell_cycle(passes)
         words = f"({passes.loop.words})"
         if moving and not self._has_moved(passes):
             words = f"{words} that {_UNMOVED}"
@@ -425,26 +409,6 @@ class Endings(Generic[Block]):
         """End the program in a loop that nothing ends."""
         what = "the program ends there"
         if self._has_moved(passes):
-            self._say_state(passes, words)
+            self._states.say(passes, words)
             what = "one pass is read" if passes.count == 1 else f"{passes.count} passes are read"
         self._host.finish(f"the program is an endless loop {words}: {what}", passes.loop.span)
-
-    def _say_state(self, passes: Passes[Block], words: str) -> None:
-        """Say where the data that choose the way of a pass have not come back."""
-        body, span = passes.loop.body, passes.loop.span
-        if len(passes.heads) != passes.count or passes.last_round() is not None:
-            return
-        names = _named(self._analysis.choosing(body) & self._analysis.written(body))
-        self._host.note_once(
-            f"state {span.file}:{span.start}",
-            f"what a pass of the loop {words} does depends on {names}, whose value has not come "
-            "back: the next pass may go another way, and no cycle is known; more are read with "
-            f"{spelt('cycles')}",
-            span,
-        )
-
-
-def _named(names: frozenset[str]) -> str:
-    """Some data, shortly."""
-    first, *more = sorted(names)
-    return first if not more else f"{first} and {counted(more, 'other datum', 'other data')}"

@@ -27,6 +27,10 @@ after a pass than before. If it does not get on, the first of these is so:
   driven by a state, which a pass sets and the next one asks for, all are read until the state comes
   back: they are the cycle.
 
+*What is set on a way that nobody has decided* is supposed from there on, in that branch's block and
+in those that were not taken, and in a loop of which it is not known how often it runs. So is what
+is made of it, what is set on a way that it decides, and a move to it (`Move.supposed`).
+
 A loop that gets on without a move, for more statements than a program may execute in a row, passes
 time or waits for others, and is left.
 
@@ -36,18 +40,19 @@ jump back closes a loop whose body is what stands between the label and the jump
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Generic
 
 from ....errors import Span
+from ..guard import Guard
 from ..host import Host, Undecided
 from ..limits import EndlessError
-from .analysis import Analysis
+from .analysis import Analysis, Way
 from .branches import ActiveBlocks, Branches
 from .endings import Endings
 from .loops import Loop, Passes, Start
-from .steps import Block
+from .steps import NOTHING, Block, Exit
 
 
 class Flow(Generic[Block]):
@@ -59,13 +64,56 @@ class Flow(Generic[Block]):
     """
 
     def __init__(self, analysis: Analysis[Block], host: Host) -> None:
+        self._analysis = analysis
         self._host = host
         self._nesting = ActiveBlocks()
         self._branches: Branches[Block] = Branches(analysis, host.course, self._nesting)
         self._endings = Endings(analysis, host, self._branches)
         self.choose = self._branches.choose
+        self._passed: set[tuple[int, str]] = set()  # labels, by their names
+        self._returns = ""  # what it depends on which RETURN of the routine under way is taken
+        self._loops: list[Passes[Block]] = []  # under way, the innermost last
         self._jumps: dict[tuple[int, object, object], Passes[Block]] = {}
         self._reached: dict[tuple[int, object], Start] = {(0, None): Start(0, 0, 0, 0)}
+
+    @contextmanager
+    def supposing(self, blocks: Iterable[Block | None], reason: str) -> Iterator[None]:
+        """One of some branches runs inside, and it is not known whether that one does: what they
+        set is supposed afterwards.
+
+        Args:
+            blocks: all that may run there.
+            reason: what it depends on; empty if it is known which one runs.
+        """
+        try:
+            yield
+        finally:
+            if reason:
+                found = [block for block in blocks if block is not None]
+                ways = {way for block in found for way in self._analysis.ways_out(block)}
+                if self._nesting.loop and ways:
+                    self._loops[-1].suppose(reason)
+                self._suppose(found, reason)
+                self._guard(ways, reason)
+
+    def _guard(self, ways: Iterable[Way], reason: str) -> None:
+        """A branch that nobody decides has these ways out."""
+        course, routine = self._host.course, self._nesting.routine
+        if any(how is Exit.ROUTINE for how, _ in ways):
+            self._returns = self._returns or reason
+            course.guard = Guard(reason, routine, False, course.guard)
+        elif any(how is Exit.JUMP and (routine, name) not in self._passed for how, name in ways):
+            course.guard = Guard(reason, routine, True, course.guard)
+
+    def _suppose(
+        self, blocks: Iterable[Block], reason: str, names: frozenset[str] = NOTHING
+    ) -> None:
+        settings: frozenset[str] = NOTHING
+        for block in blocks:
+            names |= self._analysis.written(block)
+            settings |= self._analysis.settings(block)
+        if names or settings:
+            self._host.leave_supposed(names, settings, reason)
 
     def loop(
         self,
@@ -86,7 +134,8 @@ class Flow(Generic[Block]):
         """
         nesting = self._nesting
         outer, nesting.loop = nesting.loop, nesting.number()
-        passes = Passes(loop, self._endings.start())
+        passes = Passes(loop, self._endings.start(), supposed=self._host.course.supposed)
+        self._loops.append(passes)
         try:
             with self._host.course.sections.loop(loop.words, loop.span, not loop.endless) as begins:
                 run_pass = run_pass or (lambda: run(loop.body))
@@ -95,7 +144,10 @@ class Flow(Generic[Block]):
             _goes_on(error, passes)
             raise
         finally:
+            self._loops.pop()
             nesting.loop = outer
+            if passes.supposed:
+                self._suppose([loop.body], passes.supposed, loop.writes)
 
     def _run(
         self,
@@ -109,7 +161,9 @@ class Flow(Generic[Block]):
         host, loop = self._host, passes.loop
         while True:
             if tested or passes.count:
+                host.course.supposed = ""
                 holds = goes_on()
+                passes.suppose(host.course.supposed)
                 if isinstance(holds, Undecided):
                     if passes.count >= self._endings.most(passes, holds.reason):
                         return
@@ -131,12 +185,19 @@ class Flow(Generic[Block]):
             host.meter.statement(loop.span)
             passes.count += 1
 
-    def label(self, label: object) -> None:
+    def label(self, label: object, name: str = "") -> None:
         """A label is reached, but not by a jump back: the loops that jumps to it close begin anew.
 
         Args:
             label: its key.
+            name: as jumps have it.
         """
+        course, routine = self._host.course, self._nesting.routine
+        self._passed.add((routine, name))
+        while course.guard is not None and course.guard.to_label:
+            if course.guard.routine != routine:
+                break
+            course.guard = course.guard.close()
         for place in [p for p in self._jumps if p[:2] == (self._nesting.routine, label)]:
             del self._jumps[place]
         self._reached[self._nesting.routine, label] = self._endings.start()
@@ -156,12 +217,14 @@ class Flow(Generic[Block]):
         passes = self._jumps.get(place)
         if passes is None:
             start = self._reached.get(place[:2]) or self._reached[place[0], None]
-            passes = self._jumps[place] = Passes(loop, start)
+            passes = self._jumps[place] = Passes(loop, start, unseen=1)
             passes.held = self._host.outputs.held()
         passes.count += 1
         self._host.meter.statement(loop.span)
         if self._endings.left(passes, run):
             del self._jumps[place]
+            if passes.supposed:
+                self._suppose([loop.body], passes.supposed)
             return False
         for other, inner in [*self._jumps.items()]:
             # Loops to the same label that end before this one does begin anew in its next pass.
@@ -184,6 +247,7 @@ class Flow(Generic[Block]):
         nesting.routine, nesting.loop = nesting.number(), 0
         self.label(None)  # where the routine begins
         nesting.depth += 1
+        returns, self._returns = self._returns, ""
         try:
             with self._host.course.sections.routine(name, span):
                 yield
@@ -194,7 +258,12 @@ class Flow(Generic[Block]):
             raise
         finally:
             nesting.depth -= 1
-            own = nesting.routine
+            own, course = nesting.routine, self._host.course
+            while course.guard is not None and course.guard.routine == own:
+                course.guard = course.guard.close()
+            course.suppose(self._returns)
+            self._returns = returns
+            self._passed = {p for p in self._passed if p[0] != own}
             self._jumps = {p: found for p, found in self._jumps.items() if p[0] != own}
             self._reached = {r: found for r, found in self._reached.items() if r[0] != own}
             nesting.routine, nesting.loop = outer

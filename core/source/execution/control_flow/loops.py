@@ -9,11 +9,8 @@ from typing import Generic
 
 from ....errors import Span
 from ..host import Snapshot
-from ..limits import Meter
 from .steps import NOTHING, Block
 
-_IDLE = 10
-"""Passes in a row without a move, of a loop that a state drives, after which no more is read."""
 _BOUNDS = {"<": 1.0, "<=": 1.0, ">": -1.0, ">=": -1.0}
 """Comparisons that let a loop go on: the sign of what is left up to the bound."""
 
@@ -82,6 +79,7 @@ class Start:
         moves: that were read.
         statements: in a row without a move, so far.
         driven: see `Meter.driven`.
+        place: where the robot stood.
     """
 
     skips: int
@@ -89,6 +87,24 @@ class Start:
     moves: int
     statements: int
     driven: int = 0
+    place: object = None
+
+
+@dataclass(slots=True)
+class Head:
+    """Where a pass of a loop began.
+
+    Args:
+        moves: that had been read.
+        driven: see `Meter.driven`.
+        place: where the robot stood.
+        state: the data that choose the way of a pass; None if there are none, or are too many.
+    """
+
+    moves: int
+    driven: int
+    place: object
+    state: Snapshot | None = None
 
 
 @dataclass(slots=True)
@@ -109,7 +125,6 @@ class Passes(Generic[Block]):
         snapshot, turned, asked, place, held: this state: data, answers in turn, questions for the
             position, the position, and outputs.
         still: all data that a pass may write, while it has not moved the robot and might.
-        begun: for each pass, how many moves had been read before it.
         left_to_others: whether outputs that its condition reads have just been left to others: it
             is to be asked again.
         distances: how far its condition was from ending it half way to `FORESEEN` passes, half way
@@ -119,8 +134,11 @@ class Passes(Generic[Block]):
         left: passes that it has left, as was foreseen, where these are too many to be read; None
             if that was not foreseen.
         polled: whether what its motion depends on has been left to others.
-        heads: where passes of one without an end began: how many moves had been read, how many
-            statements had moved the robot, and the data that decide about its motion.
+        supposed: what the number of its passes depends on, where a way is chosen by rule; empty if
+            on nothing.
+        unseen: passes of which nobody saw how they began: the first one of a loop that a jump
+            closes, which shows itself at its end.
+        heads: where the others began.
     """
 
     loop: Loop[Block]
@@ -138,7 +156,6 @@ class Passes(Generic[Block]):
     place: object = None
     held: dict[str, bool | float] = field(default_factory=dict)
     still: Snapshot | None = None
-    begun: list[int] = field(default_factory=list)
     left_to_others: bool = False
     polled: bool = False
     distances: list[float | None] = field(default_factory=list)
@@ -146,30 +163,25 @@ class Passes(Generic[Block]):
     row: int = 0
     runs_out: bool = False
     left: float | None = None
-    heads: list[tuple[int, int, Snapshot]] = field(default_factory=list)
+    heads: list[Head] = field(default_factory=list)
+    supposed: str = ""
+    unseen: int = 0
 
     def __post_init__(self) -> None:
         self.mark = self.start.asked
 
-    def is_under_way(self, meter: Meter, most: int) -> bool:
-        """Whether a loop without an end has states of which not all have been passed: data that
-        choose where to drive are others than before any pass, and the last one drove what none
-        before it did, or did not drive. Of one that drove everything at once there are none.
+    def suppose(self, reason: str) -> None:
+        """The number of its passes depends on something; nothing if ``reason`` is empty."""
+        self.supposed = self.supposed or reason
 
-        Args:
-            most: how many of its statements move the robot.
-        """
-        heads = self.heads
-        if len(heads) != self.count or not all(state.changed() for *_, state in heads):
-            return False
-        moves, driven, _ = heads[-1]
-        if meter.moves == moves:
-            return self.count <= _IDLE or heads[-_IDLE][0] < moves
-        at_once = driven == self.start.driven and meter.driven >= driven + most
-        return driven < meter.driven and not at_once
+    def states(self) -> list[Snapshot]:
+        """The state before each pass; none if one of them is not known."""
+        found = [head.state for head in self.heads if head.state is not None]
+        return found if len(found) == len(self.heads) else []
 
     def last_round(self) -> int | None:
-        """The first pass of the last round of a loop: from where the data that choose where to
-        drive were as they are now; None where they never were."""
-        states = (state for *_, state in self.heads)
-        return next((k for k, state in enumerate(states) if not state.changed()), None)
+        """The first pass of the last round of a loop: from where its state was as it is now; None
+        where it never was."""
+        states = self.states()
+        back = range(len(states) - 1, -1, -1)
+        return next((k for k in back if not states[k].changed()), None)
