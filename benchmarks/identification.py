@@ -58,7 +58,7 @@ from report import Figure, main
 
 from flyby.core.motion.model.motion_model import MotionModel
 from flyby.core.program.speed import Speed
-from flyby.core.program.zone import FINE, ContourFraction, Radius, Zone
+from flyby.core.program.zone import ContourFraction, Fine, Radius, Zone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.identification.fit import Fit, ParameterSet, PreparedRun, fit, prepare
 from flyby.identification.fit.emulation import Nuisance
@@ -98,7 +98,9 @@ class Driven:
     def of(self, run: LoggedRun) -> LoggedRun:
         """The run with that."""
         moves = (
-            replace(move, speed=self.speed, zone=FINE if move.zone == FINE else self.zone)
+            replace(
+                move, speed=self.speed, zone=move.zone if isinstance(move.zone, Fine) else self.zone
+            )
             for move in run.program.moves
         )
         program = run.program.with_moves(tuple(moves))

@@ -17,7 +17,7 @@ from ..core.program.program import Program
 from ..core.program.speed import Speed
 from ..core.program.target import Configuration, JointTarget, PoseTarget, Target
 from ..core.program.tool import FLANGE, WORLD, Load, Tool, WorkObject
-from ..core.program.zone import FINE, Radius, Zone
+from ..core.program.zone import FINE, Fine, Radius, Zone
 from ..core.robot.model import Robot
 from ..core.spatial.pose import IDENTITY, Pose
 from ..core.spatial.rotation import matrix_from_rotation_vector
@@ -126,7 +126,7 @@ def zones(largest: float = 0.05) -> st.SearchStrategy[Zone]:
 
 def fly_by_zones(zone: OfKind[Zone]) -> OfKind[Zone]:
     """Those of ``zone`` that let the robot pass without stopping."""
-    return lambda kind: zone(kind).filter(lambda found: found != FINE)
+    return lambda kind: zone(kind).filter(lambda found: not isinstance(found, Fine))
 
 
 def poses(reach: float = 0.4) -> st.SearchStrategy[Pose]:
@@ -232,7 +232,7 @@ def programs(
     for _ in range(draw(st.integers(1, max_moves))):
         move, q = _move(draw, kinds, robot, q, label, parts, choice)
         statements.append(draw(parts.acting(move)))
-        if move.zone != FINE:
+        if not isinstance(move.zone, Fine):
             continue
         if parts.kept is not None and draw(st.booleans()):
             statements.append(draw(parts.kept))

@@ -10,7 +10,7 @@ import numpy as np
 from ..door import called, spelt
 from ..program.move import Move, MoveJ, Opaque, Wait
 from ..program.target import JointTarget, PoseTarget
-from ..program.zone import FINE, Angle, ContourFraction, Radius, VendorZone, Zone
+from ..program.zone import Angle, ContourFraction, Fine, Radius, VendorZone, Zone
 from .finding import Hit, ProgramSubject, Rule, Severity
 from .text_rules import damaged_text, pitfalls, unused_targets
 
@@ -23,7 +23,7 @@ _SLACK = 1e-6
 
 def _zone_last(subject: ProgramSubject) -> Iterator[Hit]:
     moves = subject.program.moves
-    if moves and moves[-1].zone != FINE:
+    if moves and not isinstance(moves[-1].zone, Fine):
         yield Hit(
             "the last move ends in a zone, but nothing follows: the robot stops at the point",
             "end the last move at a stop point (fine; no C_..; r=0)",
@@ -70,7 +70,7 @@ def _stopped_zones(subject: ProgramSubject) -> Iterator[Hit]:
             )
             pending = False
         if isinstance(statement, Move):
-            index, pending = index + 1, statement.zone != FINE
+            index, pending = index + 1, not isinstance(statement.zone, Fine)
 
 
 def _stop(statement: object) -> str | None:

@@ -10,7 +10,7 @@ from ..program.move import Move, Opaque, Statement, Wait
 from ..program.program import Program
 from ..program.section import moved
 from ..program.signal import SetSignal, SignalAction, WaitSignal, names
-from ..program.zone import FINE
+from ..program.zone import Fine
 from .emulation import Party
 from .losses import Losses
 from .signals import SignalMap, renamed
@@ -61,7 +61,7 @@ class Rewording:
             elif isinstance(statement, Wait):
                 passing = False
             else:
-                passing = statement.zone != FINE
+                passing = not isinstance(statement.zone, Fine)
         return found
 
     # --------------------------------------------------------------------- statements
@@ -80,7 +80,7 @@ class Rewording:
         last = before[-1] if before else None
         if words.signals.stops and not statement.stops and isinstance(action, SetSignal):
             event = self._on_the_way(action, statement.span)
-            if event is not None and isinstance(last, Move) and last.zone != FINE:
+            if event is not None and isinstance(last, Move) and not isinstance(last.zone, Fine):
                 before[-1] = replace(last, events=(*last.events, event))
                 return []
         stops = isinstance(action, WaitSignal) or words.signals.stops

@@ -10,7 +10,7 @@ from ..program.move import Move, MoveC, MoveJ, MoveL, Opaque, Statement, Wait
 from ..program.program import Program
 from ..program.section import Section
 from ..program.target import PoseTarget
-from ..program.zone import FINE, Radius, Zone
+from ..program.zone import Fine, Radius, Zone
 
 
 class Ties:
@@ -53,7 +53,7 @@ class Ties:
         moves = list(program.moves)
         stopping = {*_before_stops(program.statements)} | {*range(len(moves))} - {*driven}
         for tied in self.moves():
-            passing = [i for i in tied if moves[i].zone != FINE]
+            passing = [i for i in tied if not isinstance(moves[i].zone, Fine)]
             if not passing or not {*tied} - {*passing} <= stopping:
                 continue
             least = min((moves[i].zone for i in passing), key=_size)

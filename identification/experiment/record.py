@@ -10,7 +10,7 @@ from ...core.errors import InputError
 from ...core.program.move import Move, MoveC, MoveJ, MoveL
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget, PoseTarget
-from ...core.program.zone import FINE, ContourFraction, Radius, Zone
+from ...core.program.zone import ContourFraction, Fine, Radius, Zone
 from ...core.robot.model import Robot
 from ...core.spatial.pose import IDENTITY, Pose
 from ..logs.records import SPEEDS
@@ -108,7 +108,7 @@ def _pose(pose: Pose) -> dict[str, Any]:
 
 
 def _zone(zone: Zone) -> dict[str, Any]:
-    if zone == FINE:
+    if isinstance(zone, Fine):
         return {"fine": True}
     if isinstance(zone, ContourFraction):
         return {"contour_fraction": zone.fraction}

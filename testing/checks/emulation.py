@@ -29,7 +29,7 @@ from ...core.program.move import Move, MoveJ, Wait
 from ...core.program.program import Program
 from ...core.program.speed import Speed
 from ...core.program.target import JointTarget
-from ...core.program.zone import FINE, Radius, Zone
+from ...core.program.zone import FINE, Fine, Radius, Zone
 from ...core.robot.model import Robot
 from ..observation import Observed, at_speed, away_from_legs, outside_zones, turned_away
 from ..strategies import OfKind, Parts, fly_by_zones, lines_near_singularities, programs
@@ -82,7 +82,7 @@ class EmulationChecks(Subject):
             else:
                 gap = robot.flange_pose(q).matrix() - move.target.pose.matrix()
                 assert np.abs(gap).max() < SAME
-            if move.zone == FINE:
+            if isinstance(move.zone, Fine):
                 nearest = np.abs(seen.q - q).max(axis=1)
                 assert nearest.min() < SAME, "a stop point is cut"
                 assert np.abs(seen.dq[nearest.argmin()]).max() < SAME, "no stop at a stop point"

@@ -13,7 +13,7 @@ import numpy as np
 from ...program.move import MoveC, MoveJ, MoveL
 from ...program.program import Program
 from ...program.target import JointTarget
-from ...program.zone import FINE
+from ...program.zone import Fine
 from ...robot.kinematics.chain_kernels import fill_poses
 from ..geometry.segments import JOINT_SEGMENT, Ends
 from .path import Route
@@ -50,7 +50,7 @@ def with_other_numbers(before: Program, route: Route, program: Program) -> Route
             return None
         if new.zone is not old.zone and k < len(zones):
             # At a stop something else may make it one.
-            if zones[k] is not old.zone or old.zone == FINE:
+            if zones[k] is not old.zone or isinstance(old.zone, Fine):
                 return None
             zones[k] = new.zone
         changed.append((k, target))

@@ -14,7 +14,7 @@ from ....core.program.move import Move, Opaque, Wait
 from ....core.program.origin import Ownership
 from ....core.program.program import Program
 from ....core.program.target import JointTarget
-from ....core.program.zone import FINE, Fine, Zone
+from ....core.program.zone import Fine, Zone
 from ..process_paths import why_process
 from ..rounding import SMALLEST
 from .sizes import Growth, size_of
@@ -76,7 +76,7 @@ def find_points(
     beside = dict(zip(driven.zone_moves, pairwise(driven.moves), strict=True))
     patterns: dict[int, Growth] = {}
     for i, move in enumerate(moves):
-        if i in kept or (move.zone == FINE and i not in freed):
+        if i in kept or (isinstance(move.zone, Fine) and i not in freed):
             continue
         if size_of(freed.get(i, move.zone)) == 0:
             continue

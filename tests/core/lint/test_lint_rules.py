@@ -26,7 +26,7 @@ from flyby.core.program.program import Program
 from flyby.core.program.speed import Speed
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, Load, Tool
-from flyby.core.program.zone import FINE, Radius
+from flyby.core.program.zone import FINE, Fine, Radius
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.spatial.pose import Pose
 from flyby.core.spatial.rotation import matrix_from_rotation_vector
@@ -171,6 +171,11 @@ def test_a_rule_finds_what_is_bad_and_nothing_else(rule) -> None:
     assert hits[0].message
     assert hits[0].fix
     assert rule not in {finding.rule for finding in found(good)}
+
+
+def test_a_stop_that_no_program_says_is_no_zone() -> None:
+    stop = line(0.2, zone=Fine(programmed=False))
+    assert not [f.rule for f in found(program(stop, Wait(0.5), stop)) if "zone" in f.rule]
 
 
 def test_a_payload_is_told_with_its_figures_where_it_begins() -> None:

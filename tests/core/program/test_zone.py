@@ -1,7 +1,9 @@
 """Zones: what they refuse, and how they are resized."""
 
+import ast
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -12,6 +14,8 @@ from flyby.core.program.zone import Radius
 from flyby.core.source.patch.edits import alike
 from flyby.vendors.abb.values import predefined
 
+ROOT = Path(__file__).parents[3]
+SHELVES = sorted(path.name for path in (ROOT / ".typing" / "flyby").iterdir() if path.is_dir())
 RADII = st.floats(1e-4, 0.3)
 PARTS = ("tcp", "reorientation", "external", "angle", "external_linear", "external_angular")
 
@@ -64,3 +68,15 @@ def test_one_distance_is_refused_to_parts_of_their_own(factor: float) -> None:
     for parts in ((0.02, 0.0), (0.0, 0.02), (0.02, 0.02)):
         with pytest.raises(InputError, match=r"make them equal \(zone.resized"):
             Radius(0.02 * factor, *parts).with_one_distance()
+
+
+@pytest.mark.parametrize("shelf", [*SHELVES, "benchmarks", "examples"])
+def test_no_stop_is_told_from_a_zone_by_one_of_the_stops(shelf: str) -> None:
+    """`FINE` is a stop that a program says; one that no program says is a stop as well."""
+    for path in (ROOT / shelf).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if not isinstance(node, ast.Compare):
+                continue
+            sides = [node.left, *node.comparators]
+            stops = [one for one in sides if isinstance(one, ast.Name) and one.id == "FINE"]
+            assert not stops, f"{path}:{node.lineno}: isinstance(zone, Fine)"

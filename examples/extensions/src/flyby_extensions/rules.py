@@ -10,7 +10,7 @@ import numpy as np
 from flyby.core.hookspec import RuleRegister, hookimpl
 from flyby.core.lint.finding import Hit, ProgramSubject, Rule, RunSubject, Severity
 from flyby.core.program.move import Wait
-from flyby.core.program.zone import FINE
+from flyby.core.program.zone import Fine
 
 LONGEST = 2.0
 """s that a robot may wait."""
@@ -37,7 +37,8 @@ def slow_corners(subject: RunSubject) -> Iterator[Hit]:
     moves = subject.program.moves
     for index, (before, after) in enumerate(pairwise(moves)):
         at = np.flatnonzero(np.diff((made.move > index).astype(int)))
-        slow = before.zone != FINE and before.speed.tcp and after.speed.tcp and len(at)
+        passed = not isinstance(before.zone, Fine)
+        slow = passed and before.speed.tcp and after.speed.tcp and len(at)
         if slow and speed[at[0]] < SLOWEST * min(before.speed.tcp, after.speed.tcp):
             yield Hit("the tool all but stops in this zone", "make the zone larger", index)
 
