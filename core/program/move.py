@@ -30,8 +30,8 @@ class _Motion:
         events: what happens on the way; it does not change the motion.
         open: why nobody knows where it goes; empty if that is known. Its target then only has a
             name, and it cannot be driven.
-        stops: whether ``open`` says that the program makes an error there, which the controller
-            stops it at: no move at all, and the last of the program.
+        stops: whether ``open`` says that the program makes an error there, at which the controller
+            stops it. Where that is in what a move is made of, the moves behind it are driven.
         unsettled: why nobody knows how it is driven, though its target is known; empty if that is
             known. It cannot be driven either, but the robot stands at its target afterwards.
         supposed: why nobody knows where it goes, or how near it passes, though it is driven by

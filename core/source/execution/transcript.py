@@ -257,13 +257,13 @@ class Transcript:
             self.emit(Wait(duration, span, device=True))
         return duration
 
-    def leaves_open(self, error: SourceError, span: Span, stops: bool = False) -> bool:
+    def leaves_open(self, error: SourceError, span: Span, ends: bool = False) -> bool:
         """A move cannot be read: it stays in the program, open, where programs go on behind such.
 
         Args:
             error: why.
             span: of the move.
-            stops: see `Move`.
+            ends: whether it is no move at all, and the program ends there.
 
         Returns:
             Whether the program goes on behind it; nobody knows where the robot stands then.
@@ -275,7 +275,10 @@ class Transcript:
         message = str(error).removeprefix(f"{error.span}: ")
         if error.span is not None and error.span.line != span.line:
             message = f"line {error.span.line}: {message}"
-        target = PoseTarget(Pose(), name="the program ends" if stops else "not known")
+        stops = isinstance(error, StopError)
+        if stops:
+            message += ": the controller stops the program here"
+        target = PoseTarget(Pose(), name="the program ends" if ends else "not known")
         part = MovePart(span)
         self.emit_move(
             MoveJ(target, Speed(joint_fraction=1.0), open=message, stops=stops),
@@ -293,8 +296,7 @@ class Transcript:
         """
         if error.span is None or not self.parts:
             return False
-        message = f"the program stops here, as the controller has an error: {error.message}"
-        return self.leaves_open(SourceError(message, error.span), error.span, stops=True)
+        return self.leaves_open(error, error.span, ends=True)
 
     def statements(self, reads: Reads) -> tuple[Statement, ...]:
         """What was carried out, each move with the origin of its numbers.

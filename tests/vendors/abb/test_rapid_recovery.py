@@ -165,9 +165,9 @@ ENDMODULE
 """
 
 
-def test_an_error_that_nobody_handles_ends_the_program_behind_what_was_driven() -> None:
+def test_an_error_in_a_target_that_nobody_handles_is_a_fault() -> None:
     run = flyby.emulate(flyby.read(FAULTY, robot="abb/irb2600-12-165"))
-    assert [move.kind for move in run.program.moves] == ["MoveJ", "MoveL", "MoveL", "stop"]
+    assert [move.kind for move in run.program.moves] == ["MoveJ", "MoveL", "MoveL", "stop", "MoveJ"]
     (fault,) = run.faults
     assert fault.cause is FaultCause.ERROR
     assert fault.span.line == 7

@@ -102,7 +102,7 @@ def test_an_error_of_the_controller_ends_the_program_behind_what_was_driven(
     assert [bool(move.open) for move in program.moves] == [False, False, True]
     (fault,) = drive(Controller(VENDOR, KR30), program).faults
     assert str(fault).startswith("m.src:8:") and fault.message.endswith(
-        f"the program stops here, as the controller has an error: {says}"
+        f"{says}: the controller stops the program here"
     )
     with pytest.raises(SourceError, match=r"m\.src:8:"):
         VENDOR.read(f"DEF m()\n{head}{START}{rest}{line}\nEND\n", "m.src", robot=KR30)

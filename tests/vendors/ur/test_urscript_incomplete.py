@@ -71,7 +71,7 @@ def test_an_error_of_the_controller_ends_the_program_behind_what_was_driven(
     program = read(head + HOME + text, "t.script", going)
     assert [bool(move.open) for move in program.moves] == [False, True]
     message = program.moves[-1].open
-    assert message.startswith("the program stops here, as the controller has an error: ")
+    assert message.endswith(": the controller stops the program here")
     assert says in message
     with pytest.raises(SourceError, match=r"t\.script:4:"):
         read(head + HOME + text, "t.script", ReadOptions())

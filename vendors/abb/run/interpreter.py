@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import NoReturn
 from weakref import proxy
 
-from ....core.door import spelt
 from ....core.errors import Note, SourceError, Span, StopError
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.control_flow.analysis import Analysis
@@ -95,33 +94,14 @@ class Interpreter(RapidHost):
             for _ in range(self.course.answers.cycles if entry.name == MAIN else 1):
                 try:
                     self.call(entry, arguments, scope, entry.span)
-                except ProgramError as error:
-                    self._stop_at(error)
                 except StopError as error:
                     if not self.out.stops(error):
                         raise
-                    break
+                    return
             body, once = self.tree.body(entry), self.course.answers.cycles == 1
             other = next_pass(self.evaluator, before, self.analysis, body) if once else None
             if other is not None:
                 self.out.notes.once("pass", other[1], other[0].span)
-
-    def _stop_at(self, error: ProgramError) -> NoReturn:
-        """No handler takes an error of the program: what it has driven until there was driven.
-
-        Raises:
-            ProgramError: it has not moved the robot, or programs are read as a whole or not at all.
-        """
-        span = error.span
-        said = str(error).removeprefix(f"{span}: ")
-        stopped = SourceError(
-            f"{said}: the controller stops the program here; PERS data that others (another task, "
-            f"a computer) write are said in a file ({spelt('answers')}): [values]",
-            span,
-        )
-        if span is None or not self.meter.moves or not self.out.leaves_open(stopped, span, True):
-            raise error
-        raise Finished
 
     def statements(self) -> tuple[ProgramStatement, ...]:
         """What was executed, each move with the origin of its numbers."""
@@ -276,7 +256,7 @@ class Interpreter(RapidHost):
         """Whether the program goes on behind an instruction that cannot be carried out: a move
         stays open, and of what a setting sets nobody knows the value."""
         handled = any(frame.routine.handler is not None for frame in self._frames)
-        if isinstance(error, ProgramError) and (handled or not self.course.guessed):
+        if isinstance(error, ProgramError) and handled:
             return False
         settings = SETS.get(statement.name)
         if settings is None:

@@ -6,7 +6,7 @@ those given here only tell them apart, as programs do.
 
 from __future__ import annotations
 
-from ....core.errors import SourceError, Span
+from ....core.errors import Span, StopError
 
 DIVISION_BY_ZERO = "err_divzero"
 OUT_OF_BOUNDS = "err_outofbnd"
@@ -66,7 +66,7 @@ NUMBERS = {name: BOOKED + 1.0 + place for place, name in enumerate(_NAMES.split(
 """lower-case name → number."""
 
 
-class ProgramError(SourceError):
+class ProgramError(StopError):
     """The program makes an error while it runs.
 
     Args:

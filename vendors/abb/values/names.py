@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Protocol
 
+from ....core.door import spelt
 from ....core.errors import SourceError, Span
 from ....core.program.question import QuestionKind
 from ....core.source.execution.course import Course
@@ -371,7 +372,7 @@ class Names(ABC):
         try:
             found = located_part(cell, value, path, name)
         except ProgramError as error:
-            outside, type_ = self._tolerated(error), cell.type
+            outside, type_ = self._tolerated(self._outside(error, name, scope)), cell.type
             for step in path:
                 if isinstance(step, str) and isinstance(type_, RecordType):
                     type_ = type_.components[step]
@@ -380,6 +381,16 @@ class Names(ABC):
             return found
         known = nominal(found.value, found.type)
         return Located(replace(missing, nominal=known), None, cell, type=found.type)
+
+    def _outside(self, error: ProgramError, name: tree.Name, scope: Scope) -> ProgramError:
+        """An index outside an array, with the datum that others may write into."""
+        for index in (one for step in name.path if not isinstance(step, str) for one in step):
+            cell = self.cell(index, scope) if isinstance(index, tree.Name) else None
+            if cell is not None and cell.persistent:
+                others = f"what others write into {cell.name} is said in a file"
+                said = f"{error.message}; {others} ({spelt('answers')}): [values]"
+                return ProgramError(said, name.span, error.number)
+        return error
 
     def _tolerated(self, error: ProgramError) -> Unknown:
         """What stands outside an array, where nobody knows whether the program comes there.
