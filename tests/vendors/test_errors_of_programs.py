@@ -6,6 +6,7 @@ import pytest
 
 import flyby
 from flyby.core.errors import FaultCause, SourceError
+from flyby.core.program.move import Wait
 from flyby.core.program.program import Program
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.source.execution.answers import Answers
@@ -97,6 +98,45 @@ def test_elsewhere_it_ends_the_program(vendor: str) -> None:
     program = read(vendor, "first", "second", "elsewhere", "first")
     assert [move.stops for move in program.moves] == [False, False, True]
     assert program.moves[2].open == "division by zero: the controller stops the program here"
+
+
+WAITS = {"abb": "WaitTime {};", "kuka": "WAIT SEC {}", "ur": "sleep({})"}
+NO_WAIT = {
+    "abb": "WaitTime of -1.5 s: the least that it takes is 0 s",
+    "kuka": "WAIT SEC of -1.5 s: the program does not wait",
+    "ur": "sleep of -1.5 s: there is no such time",
+}
+
+
+@pytest.mark.parametrize("goes_on", [True, False])
+@pytest.mark.parametrize("vendor", ROBOTS)
+def test_a_wait_of_a_time_below_zero_is_none_and_stops_the_robot(
+    vendor: str, goes_on: bool
+) -> None:
+    wait = WAITS[vendor]
+    program = read(vendor, "first", wait.format("-1.5"), "second", wait.format(2), goes_on=goes_on)
+    waits = [one.duration for one in program.statements if isinstance(one, Wait)]
+    assert waits == [0.0, 2.0] and len(program.moves) == 2
+    (note,) = (note for note in program.notes if NO_WAIT[vendor] in note.message)
+    text = TEXTS[vendor].partition("BODY")[0]
+    assert note.span is not None and note.span.line == text.count("\n") + 2
+
+
+LOOPS = {
+    "abb": ("FOR i FROM {} TO {} STEP none DO", "ENDFOR"),
+    "kuka": ("FOR n={} TO {} STEP none", "ENDFOR"),
+}
+
+
+@pytest.mark.parametrize(("bounds", "passes"), [((1, 5), 1), ((2, 2), 1), ((5, 1), 0)])
+@pytest.mark.parametrize("vendor", LOOPS)
+def test_a_loop_that_counts_by_nothing_is_left_with_a_note(
+    vendor: str, bounds: tuple[int, int], passes: int
+) -> None:
+    begin, end = LOOPS[vendor]
+    program = read(vendor, "first", begin.format(*bounds), "second", end, "first")
+    assert len(program.moves) == 2 + passes and not any(move.open for move in program.moves)
+    assert any("STEP is zero" in note.message for note in program.notes)
 
 
 def test_a_handler_takes_one_of_a_move() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ...display import counted
-from ...errors import LeftOpenError, Note, ParseError, SourceError, Span, StopError
+from ...errors import InputError, LeftOpenError, Note, ParseError, SourceError, Span, StopError
 from ...program.call import Call
 from ...program.move import Move, MoveJ, Opaque, Statement, Wait
 from ...program.origin import MoveOrigin
@@ -21,6 +21,11 @@ from .streams import Stream, Streaming
 
 _SHOWN = 4
 """Names that a note on kept statements lists."""
+STEPLESS = (
+    "STEP is zero: the counter stands still, and the controller never leaves the loop; of its "
+    "passes at most one is read, and what stands behind it"
+)
+"""What is said of a ``FOR`` that counts by nothing."""
 
 
 @quick(frozen=True, slots=True)
@@ -240,6 +245,25 @@ class Transcript:
             assert first.span is not None
             if not self.leaves_open(first, first.span):
                 raise first
+
+    def wait(self, duration: float, name: str, below_zero: str, span: Span) -> None:
+        """The robot stands for the time that a program says.
+
+        Args:
+            duration: s; one below zero is none, with a note.
+            name: of the statement.
+            below_zero: what a controller makes of a time below zero.
+            span: of the statement.
+
+        Raises:
+            SourceError: it is no number that is finite.
+        """
+        if duration < 0:
+            self.notes.count(f"{name} of {duration:g} s: {below_zero}; no wait is taken", span)
+        try:
+            self.emit(Wait(max(0.0, duration), span))
+        except InputError as error:
+            raise SourceError(f"{name}: {error}", span) from None
 
     def pause(self, text: str, span: Span, listed: bool = True) -> float:
         """The robot stands for as long as the user says that a statement takes.

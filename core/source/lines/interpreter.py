@@ -16,7 +16,6 @@ from weakref import proxy
 from ...errors import FlybyError, InputError, PluginFault, SourceError, Span, StopError
 from ...program import move
 from ...program.entry_point import ALL, EntryPoint, listed
-from ...program.move import Wait
 from ...program.program import Program
 from ..execution.control_flow.analysis import Analysis
 from ..execution.control_flow.flow import Flow
@@ -377,7 +376,7 @@ class _Interpreter:
         if statement.time is not None:
             value = self._values.value(statement.time)
             if not isinstance(value, Unknown):
-                self._out.emit(Wait(max(0.0, float(value)), statement.span))
+                self._out.wait(float(value), "a wait", "there is no such time", statement.span)
                 return
             why = f"its time depends on {value.reason} and is taken as zero"
         else:

@@ -243,7 +243,6 @@ def test_unknown_values_travel_and_drive_as_their_defaults():
         ("two m:=1, 2;", "this argument of two is n, not m"),
         ("at loop;", "depends on itself"),
         ("MoveLL p, v100, z10, tool0;", "did you mean movel?"),
-        ("FOR i FROM 1 TO 2 STEP 0 DO ENDFOR", "STEP is zero"),
         ("GOTO nowhere;", "no label nowhere"),
         ("RAISE 1;", "no ERROR handler takes the error 1"),
         ("RETRY;", "RETRY stands outside an error handler"),
@@ -285,7 +284,6 @@ def test_a_wait_for_an_unknown_time_is_kept_as_a_stop():
     (statement,) = program("WaitTime AInput(ai1);").statements
     assert isinstance(statement, Opaque) and statement.stops
     assert "above zero" in refusal("VelSet 100,0;")
-    assert "zero seconds or more" in refusal("WaitTime -1;")
 
 
 def test_functions_in_messages_run():

@@ -138,7 +138,6 @@ def test_a_damaged_file_says_where(tmp_path, krl):
         ("DEF a( )\nFRAME f\nf.Q=1\nEND", 3, ": FRAME has no component Q"),
         ("DEF a( )\nGOTO nowhere\nEND", 2, "no label nowhere"),
         ("DEF a( )\nEXIT\nEND", 1, "EXIT stands outside a loop"),
-        ("DEF a( )\nFOR i=1 TO 5 STEP 0\nENDFOR\nEND", 2, "STEP is zero"),
         ("DEF a( )\nx=ABS(1,2)\nEND", 2, "ABS: it takes 1 argument, not 2"),
         ("DEF a( )\nx=SQRT(-1)\nEND", 2, "SQRT: there is no finite value"),
         ("DEF a( )\nBAS(#TOOL)\nEND", 2, "the number of a tool"),

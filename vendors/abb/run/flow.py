@@ -14,6 +14,7 @@ from ....core.source.execution.control_flow.loops import Loop, to_bound
 from ....core.source.execution.course import Course
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
+from ....core.source.execution.transcript import STEPLESS, Transcript
 from ..syntax.traversal import calls_in
 from ..syntax.tree import Block, Expression, For, If, Operation, Test, Truth, While
 from ..values.evaluator import Evaluator
@@ -33,6 +34,7 @@ class Carrying(Protocol):
     tree: RapidTree
     analysis: Analysis[Block]
     flow: Flow[Block]
+    out: Transcript
 
     def text_of(self, expression: Expression) -> str:
         """An expression as it stands."""
@@ -143,7 +145,8 @@ def run_for(run: Carrying, statement: For, scope: Scope) -> None:
     if statement.step is None:
         step = -1.0 if first is not None and last is not None and first > last else 1.0
     if step == 0:
-        raise SourceError("STEP is zero: the loop has no end", statement.span)
+        run.out.notes.once(f"step {statement.span}", STEPLESS, statement.span)
+        last, step = None if first is None or last is None else min(first, last), 1.0
     counter = Variable(statement.name, NUM, constant=True)  # programs may only read it
     counter.supposed = run.course.supposed
     run.course.suppose(ends)

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, SourceError
-from ....core.program.move import Wait
+from ....core.errors import SourceError
 from ....core.source.execution.scopes import alike
 from ....core.source.text.lexer import words
 from ..motion.move_arguments import MovesRun
@@ -60,10 +59,7 @@ def _wait_time(run: Running, invoke: Invoke, scope: Scope) -> None:
     wrong = mismatch(value, NUM)
     if wrong is not None or not isinstance(value, float):
         raise SourceError(f"WaitTime: {wrong}", invoke.span)
-    try:
-        run.out.emit(Wait(value, invoke.span))
-    except InputError as error:
-        raise SourceError(f"WaitTime: {error}", invoke.span) from None
+    run.out.wait(value, "WaitTime", "the least that it takes is 0 s", invoke.span)
 
 
 def _change(

@@ -11,7 +11,7 @@ from ....core.errors import SourceError, Span
 from ....core.source.execution.control_flow import flow, loops
 from ....core.source.execution.course import Course
 from ....core.source.execution.host import Undecided
-from ....core.source.execution.transcript import Notes
+from ....core.source.execution.transcript import STEPLESS, Notes
 from ..syntax.traversal import calls_in
 from ..syntax.tree import (
     Block,
@@ -225,9 +225,10 @@ class Flow:
             if find_unknown(value) is None and not _is_number(value):
                 raise SourceError(f"FOR counts numbers, not {shown(value)}", bound.span)
         start, stop, step = (*values, 1)[:3]
-        if step == 0:
-            raise SourceError("STEP is zero: the loop has no end", statement.span)
         unknown = next(filter(None, map(find_unknown, values)), None)
+        if step == 0:
+            self._notes.once(f"step {statement.span}", STEPLESS, statement.span)
+            stop, step = stop if unknown else min(start, stop), 1  # type: ignore[type-var]
         self._evaluator.assign(statement.counter, unplaced(start), scope, statement.span)
         self._course.supposed = ends
         run = self._pass(scope)

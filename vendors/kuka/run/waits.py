@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ....core.errors import SourceError
-from ....core.program.move import Wait
 from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Halt, Keyword, WaitFor, WaitSec
 from ..values.evaluator import Evaluator
@@ -52,8 +51,8 @@ class Waits:
             return
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise SourceError(f"WAIT SEC wants a number, not {shown(value)}", statement.time.span)
-        # A time below zero is met as a mere stop of the advance run.
-        self._transcript.emit(Wait(max(0.0, float(value)), statement.span))
+        below_zero = "the program does not wait, and only the advance run stops"
+        self._transcript.wait(float(value), "WAIT SEC", below_zero, statement.span)
 
     def wait_for(self, statement: WaitFor, scope: Scope) -> None:
         self._waited.suppose(statement.condition, scope)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from ....core.errors import InputError, SourceError, Span
-from ....core.program.move import Wait
+from ....core.errors import SourceError, Span
 from ....core.source.execution.control_flow.flow import Flow
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
@@ -199,10 +198,7 @@ def _sleep(run: CallsRun, node: Call, scope: Scope) -> Located:
         raise run.texts.error_at(f"sleep takes a time in s, not {describe(value)}", node)
     for thread in run.threads:
         thread.waited = True
-    try:
-        run.out.emit(Wait(float(value), run.texts.span_of(node)))
-    except InputError as error:
-        raise run.texts.error_at(f"sleep: {error}", node) from None
+    run.out.wait(float(value), "sleep", "there is no such time", run.texts.span_of(node))
     return NOTHING
 
 
