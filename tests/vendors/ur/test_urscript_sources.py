@@ -1,6 +1,7 @@
 """URScript texts as files hold them, and texts that are damaged."""
 
 import gzip
+import os
 import random
 import re
 import time
@@ -220,7 +221,8 @@ LIBRARIES = {
     "hand.script": "def squeeze(width):\n  set_digital_out(0, width > 0)\nend",
     "driving.script": "def park():\n  sleep(1)\nend\nmovej([0, -1, 1, -1, -1, 0])",
     "old.script": "def lift_2():\nend",
-    "older.script": "def lift_2():\nend",
+    "older.script": "def lift_2():\n  sleep(1)\nend",
+    "older_copy.script": "def lift_2():\n  sleep(1)\nend",
 }
 
 
@@ -242,8 +244,60 @@ def test_files_beside_it_that_define_what_a_script_calls(text, missing, taken, t
     path.write_text(text, "utf-8")
     program = read_file(path)
     away = [q.key for q in program.questions if q.kind is QuestionKind.ROUTINE]
-    told = [n.message for n in program.notes if "lies beside the program" in n.message]
+    told = [n.message.partition(" defines functions that")[::2] for n in program.notes]
     assert away == missing
-    assert [message.partition(",")[0] for message in told] == taken
+    assert [file for file, rest in told if rest] == taken
+    doubt = "'lift_2' is defined in old.script, older.script: nobody knows which"
+    assert any(doubt in note.message for note in program.notes) == ("lift_2" in missing)
     drives = [move.target.pose.position[1] for move in program.moves if isinstance(move, MoveL)]
     assert drives == [0.1 * int(n) for n in re.findall(r"lift\((\d)\)", text)]
+
+
+PLACE = "def place_at(n):\n  movel(p[0.3, 0.1 * n, 0.1, 0, 3, 0])\nend"
+OTHER = "def place_at(n):\n  sleep(n)\nend"
+
+
+@pytest.mark.parametrize(
+    ("files", "taken"),
+    [
+        ({"cell/lib/hand.script": PLACE}, "lib/hand.script"),
+        ({"hand.script": PLACE}, "../hand.script"),
+        ({"lib/hand.script": PLACE}, None),  # nothing tells that both are of one project
+        ({"lib/hand.script": PLACE, "README.md": "a cell"}, "../lib/hand.script"),
+        ({"a/b/c/hand.script": PLACE, ".git/config": ""}, "../a/b/c/hand.script"),
+        ({".old/hand.script": PLACE, "README.md": ""}, None),
+        (
+            {"lib/hand.script": PLACE, "copy/hand.script": PLACE, "README": ""},
+            "../copy/hand.script",
+        ),
+        ({"lib/hand.script": PLACE, "old/hand.script": OTHER, "README": ""}, None),
+        (
+            {"lib/place_at.script": PLACE, "old/hand.script": OTHER, "README": ""},
+            "../lib/place_at.script",
+        ),
+        ({"cell/hand.script": PLACE, "lib/hand.script": OTHER, "README": ""}, "hand.script"),
+    ],
+)
+def test_files_of_the_project_that_define_what_a_script_calls(files, taken, tmp_path) -> None:
+    root = tmp_path / "project"
+    for name, text in {**files, "cell/main.script": "place_at(1)\nplace_at(2)\n"}.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text, "utf-8")
+    program = read_file(root / "cell" / "main.script")
+    told = [n.message.partition(" defines functions that")[::2] for n in program.notes]
+    assert [file for file, rest in told if rest] == ([taken] if taken else [])
+    assert len(program.moves) == (2 if taken else 0)
+    several = OTHER in files.values() and not taken
+    said = "'place_at' is defined in ../lib/hand.script, ../old/hand.script"
+    assert any(said in note.message for note in program.notes) == several
+
+
+def test_of_a_huge_tree_a_part_is_looked_at(tmp_path, monkeypatch) -> None:
+    looked: list[Path] = []
+    scandir = os.scandir
+    monkeypatch.setattr(os, "scandir", lambda path: (looked.append(Path(path)), scandir(path))[1])
+    for number in range(900):
+        (tmp_path / "README" / str(number)).mkdir(parents=True)
+    (tmp_path / "README" / "main.script").write_text("place_at(1)\nmovej([0, -1, 1, -1, -1, 0])\n")
+    program = read_file(tmp_path / "README" / "main.script")
+    assert len(program.moves) == 1 and 500 < len(looked) < 1100

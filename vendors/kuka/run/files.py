@@ -9,14 +9,13 @@ and such a tree beside it.
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Container, Iterable, Iterator
-from itertools import islice, takewhile
-from operator import attrgetter
+from collections.abc import Iterable
+from itertools import islice
 from pathlib import Path
 
 from ....core.errors import FlybyError
+from ....core.files.tree import entries, inside, nearest_first, subfolders
 from ....core.source.text.files import SourceFile, read_source
 from ....core.source.text.lexer import words
 from ..values.library import CONFIG, stem_of
@@ -73,7 +72,7 @@ def _named(other: Path) -> list[Path]:
 
 def _near(path: Path) -> dict[str, list[Path]]:
     """Files around the program by lower-case stem, nearest folder first."""
-    around = (entry for folder in _folders(path) for entry in _entries(folder))
+    around = (entry for folder in _folders(path) for entry in entries(folder))
     named = (e.path for e in islice(around, _MOST_FILES) if e.name.lower().endswith(SUFFIXES))
     return _by_stem(path, map(Path, named))
 
@@ -94,49 +93,12 @@ def _folders(path: Path) -> list[Path]:
     tree = [folder for folder in (own, *own.parents[:_DEEPEST]) if folder.name.lower() in _TREE]
     if tree:
         # What they stand in may be called otherwise: the folder of a copy, of a repository.
-        beside = [f for f in _subfolders(tree[-1].parent, _TREE) if f != tree[-1]]
-        around = [f for root in (tree[-1], *beside) for f in _inside(root, _DEEPEST)]
+        beside = [f for f in subfolders(tree[-1].parent, _TREE) if f != tree[-1]]
+        around = [f for root in (tree[-1], *beside) for f in inside(root, _DEEPEST)]
     else:
-        beside = _subfolders(own.parent, _TREE)
-        around = [*_inside(own, _DEEPEST), own.parent, *beside]
-    others = [f for f in dict.fromkeys(around) if f != own]
-    # What is farther away in the tree comes later.
-    others.sort(key=lambda folder: len(own.parts) - _shared(own, folder))
-    return [path.parent, *others]
-
-
-def _inside(folder: Path, deep: int) -> Iterator[Path]:
-    """A folder and those in it."""
-    yield folder
-    if deep:
-        for inner in _subfolders(folder):
-            yield from _inside(inner, deep - 1)
-
-
-def _shared(one: Path, other: Path) -> int:
-    """How many folders two paths have in common."""
-    pairs = zip(one.parts, other.parts, strict=False)
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-
-
-def _subfolders(root: Path, called: Container[str] | None = None) -> list[Path]:
-    """The folders in one that are not hidden; of those ``called`` so alone, if that is said."""
-    return [
-        Path(entry.path)
-        for entry in _entries(root)
-        if not entry.name.startswith(".")
-        and (called is None or entry.name.lower() in called)
-        and (Path(entry.path) if entry.is_symlink() else entry).is_dir()  # links may go in circles
-    ]
-
-
-def _entries(folder: Path) -> list[os.DirEntry[str]]:
-    """What is in a folder, by name, as far as it may be looked at."""
-    try:
-        with os.scandir(folder) as found:
-            return sorted(islice(found, _MOST_FILES), key=attrgetter("name"))
-    except OSError:
-        return []
+        beside = subfolders(own.parent, _TREE)
+        around = [*inside(own, _DEEPEST), own.parent, *beside]
+    return [path.parent, *nearest_first(own, around)]
 
 
 def _words(files: Iterable[SourceFile]) -> set[str]:

@@ -50,9 +50,7 @@ from ..values.instructions import driven_by
 from .analysis import ScriptTree
 from .entry import run_program
 from .interpreter import Interpreter
-from .libraries import libraries_of
-
-_TAKEN = "{}, which lies beside the program, defines functions that it calls: it is read as well"
+from .libraries import Libraries
 
 
 def read(text: str, file: str, options: ReadOptions | None = None) -> Program:
@@ -93,15 +91,15 @@ def read_file(path: str | Path, options: ReadOptions | None = None) -> Program:
     script = script_of_nodes(main) if isinstance(main, TreeFile) else None
 
     def of(source: SourceFile, more: Iterable[Note]) -> Program:
-        before = dict(others)
+        before, libraries = dict(others), Libraries(Path(path), options.beside)
         while True:
             files = {**before, source.name: source}
             program = _read_files(files, source.name, options, (*notes, *more))
-            found = libraries_of(program, Path(path), options.beside, files)
+            found = libraries.of(program, files)
             if not found:
-                return program
+                return replace(program, notes=(*libraries.doubts(), *program.notes))
             before = {**found, **before}
-            more = (*more, *(Note(_TAKEN.format(Path(name).name)) for name in found))
+            more = (*more, *map(libraries.taken, found))
 
     if script is None:
         return of(main, told)
