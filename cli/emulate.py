@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import typer
 
 from ..core.display import counted
 from ..core.errors import EntryError, FaultCause, FlybyError, InputError, OptionError
+from ..core.motion.path.no_move import no_move
 from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with, next_command
@@ -32,6 +34,9 @@ from .parameters import AsJson, Force, PageFile, ProgramFile, with_options
 if TYPE_CHECKING:
     from ..core.program.program import Program
     from ..tasks.results.runs import Run
+
+_CHOOSE = re.compile(r"(?:; or|:) choose as the entry")
+"""In what is said of a program that drives nothing where it begins, before the routines that do."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +110,7 @@ def emulate(
     check_outputs(outputs, inputs, replace_existing=force)
     given = [option for option, path in outputs.items() if path is not None]
     with progress("looking for the robot"):
-        source, notes = with_robot(program, source)
+        source, notes = with_robot(program, source, gives_way=True)
     if source.entry == ALL:
         if given:
             raise OptionError(f"{given[0]} is of one program: name one entry, not all")
@@ -114,13 +119,13 @@ def emulate(
         return
     with progress("reading the program") as say:
         read = _begun(program, source, each=not given)
-        if not isinstance(read, str):
+        if not isinstance(read, _Nowhere):
             read = replace(read, notes=(*notes, *read.notes))
             run = _driven(read, replace(options, report=say))
             say("writing results")
-    if isinstance(read, str):
+    if isinstance(read, _Nowhere):
         warn_of(notes)
-        _each(program, source, options, as_json=json, why=read)
+        _each(program, source, options, as_json=json, nowhere=read)
         return
     with progress("writing results"):
         made = _write_files(files, run, inputs, opaque, force)
@@ -134,7 +139,15 @@ def emulate(
         raise typer.Exit(1)
 
 
-def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | str:
+@dataclass(frozen=True)
+class _Nowhere:
+    """A program that drives nothing where it begins: why, and the routine that it begins with."""
+
+    why: str
+    routine: str = ""
+
+
+def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | _Nowhere:
     """The program, read; or why it begins nowhere in particular.
 
     Args:
@@ -145,10 +158,14 @@ def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | str
     try:
         read = read_with(program, source)
     except EntryError as error:
-        return str(error).partition(": choose as the entry")[0]
-    if read.moves or not others_drive(read.entries):
+        return _Nowhere(_CHOOSE.split(str(error))[0])
+    if read.moves or any(question.answered for question in read.questions):
         return read
-    return f"{program}: {read.name} drives nothing as it begins"
+    if others_drive(read.entries):
+        return _Nowhere(f"{program}: {read.name} drives nothing as it begins")
+    why, *others = _CHOOSE.split(str(no_move(read)))
+    begun = next((entry.name for entry in read.entries if entry.begun), "")
+    return _Nowhere(why, begun) if others else read
 
 
 def _driven(read: Program, options: EmulateOptions) -> Run:
@@ -164,22 +181,29 @@ def _driven(read: Program, options: EmulateOptions) -> Run:
 
 
 def _each(
-    program: Path, source: SourceOptions, options: EmulateOptions, *, as_json: bool, why: str = ""
+    program: Path,
+    source: SourceOptions,
+    options: EmulateOptions,
+    *,
+    as_json: bool,
+    nowhere: _Nowhere | None = None,
 ) -> None:
     """Drive every routine that a program may begin with, and report each.
 
     What those move to that take arguments may hang on these alone: that is no fault of theirs.
 
     Args:
-        why: where nobody has asked for each of them.
+        nowhere: where nobody has asked for each of them.
     """
     with progress("reading the program"):
         entries = read_with(program, replace(source, entry=ALL)).entries
-    moving = [entry for entry in entries if entry.moves]
+    left_out = "" if nowhere is None else nowhere.routine
+    moving = [entry for entry in entries if entry.moves and entry.name != left_out]
     if not moving:
         raise InputError(f"{program}: no routine in it moves the robot: there is nothing to drive")
-    if why:
-        warn(f"{why}: each routine that moves the robot is driven by itself; --entry names one")
+    if nowhere is not None:
+        each = "each routine that moves the robot is driven by itself; --entry names one"
+        warn(f"{nowhere.why}: {each}")
     failed, driven = False, 0
     through: list[bool] = []
     told: list[dict[str, Any]] = []

@@ -38,6 +38,20 @@ def assumed_places(program: Program) -> dict[int, tuple[str, ...]]:
     return found
 
 
+def doubtful_places(program: Program) -> dict[int, tuple[str, ...]]:
+    """What nobody knows of the places that moves are driven to, by the index of each such move: its
+    tool and work object, or else where the robot stands first, or the target itself.
+
+    The configuration that is programmed there tells nothing of a place that is not its own.
+    """
+    found = assumed_places(program)
+    for index, move in enumerate(program.moves):
+        if move.supposed:
+            what = "the start" if move.supposed == FROM_THE_START else "the target"
+            found.setdefault(index, (what,))
+    return found
+
+
 def refuse_assumed(program: Program) -> None:
     """Refuse a program that something is proven of, or written from, if a place of it, a tool or a
     work object is not known: it would hold for what that is taken for.

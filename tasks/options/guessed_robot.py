@@ -40,7 +40,12 @@ _FOLDERS = 3
 
 
 def with_robot(
-    source: str | Path, options: SourceOptions, *, writes: bool = False, option: str = "robot"
+    source: str | Path,
+    options: SourceOptions,
+    *,
+    writes: bool = False,
+    option: str = "robot",
+    gives_way: bool = False,
 ) -> tuple[SourceOptions, tuple[Note, ...]]:
     """Options that name a robot where something tells of one, and what is to be said of that.
 
@@ -48,6 +53,8 @@ def with_robot(
         writes: whether a program is written, which is right for its own robot alone: then somebody
             has to say which it is.
         option: that says it.
+        gives_way: whether configurations of which an arm that is no more than guessed does not
+            drive all may give way to the nearest: they are those of another arm.
 
     Raises:
         FlybyError: what is named is no program; it is to be said which robot it is.
@@ -66,7 +73,7 @@ def with_robot(
     found = _guessed(source, options)
     if found is None:
         return options, ()
-    arm, why = found
+    arm, why, faults = found
     if writes:
         raise OptionError(
             f"which robot is {source} for? What is written is right for that one alone: say it, "
@@ -75,7 +82,16 @@ def with_robot(
     said = (
         f"nobody says which robot it is: {arm.name} is taken: {why}; {spelt('robot')} says another"
     )
-    return replace(options, robot=arm.name), (Note(said),)
+    options = replace(options, robot=arm.name)
+    if gives_way and faults and options.configuration is None:
+        nearest = replace(options, configuration="nearest")
+        if _faults(source, nearest, faults, placing=False) < faults:
+            said += (
+                "; no arm that was tried drives it by its configurations: those that contradict "
+                "their pose or path give way to the nearest"
+            )
+            options = nearest
+    return options, (Note(said),)
 
 
 def read_or_guess(source: str | Path, options: SourceOptions) -> Program:
@@ -100,8 +116,8 @@ def _says_its_robot(backup: Backup, options: SourceOptions) -> bool:
     return robot is not None and (robot.robot is not None or bool(robot.written))
 
 
-def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] | None:
-    """An arm, and why it is taken."""
+def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str, int] | None:
+    """An arm, why it is taken, and how many faults are known that it drives the program with."""
     from ...core.driving.fitting_arms import TakenPlaces
     from ...core.registry import all_listed
 
@@ -128,38 +144,42 @@ def _guessed(source: str | Path, options: SourceOptions) -> tuple[Listed, str] |
         assumed = ", with its unknown tools and frames as they are assumed"
     for text, named in _mentioned(path, program, arms):
         fit = places.taken_by(vendor, named) if places.count else []
-        return (*fit, *named)[0], f"{text!r} stands in its text or folder"
+        return (*fit, *named)[0], f"{text!r} stands in its text or folder", 0
     if program is None or not places.count:
         middle, seven = _middle(arms), [arm for arm in arms if arm.axes == _USUAL + 1]
         if program is None or middle is None or not seven or not 0 < len(program.moves) <= _LONGEST:
             return middle
         # A seventh axis may be written as one beside the arm: what its values are, that arm knows.
-        best = _first_that_drives(source, options, ([middle[0], *seven], []), 1 + len(seven))
-        return middle if best is middle[0] else (best, "it has a seventh axis, which targets name")
+        best, _ = _first_that_drives(source, options, ([middle[0], *seven], []), 1 + len(seven))
+        if best is middle[0]:
+            return middle
+        return best, "it has a seventh axis, which targets name", 0
     fit = places.taken_by(vendor, arms)
     why = f"{said_to_fit(fit, places.count)}{assumed}"
     if not fit:
         fit, why = places.most_taken_by(vendor, arms)[:_TRIED], "none can take all its places"
     elif not places.flanges:  # postures tell nothing of the size
+        fit = [arm for arm in fit if arm.axes == _USUAL] or fit
         mean = sorted(arm.reach or 0.0 for arm in fit)[len(fit) // 2]
         fit.sort(key=lambda arm: abs((arm.reach or 0.0) - mean))
         why = f"{why}, it with a middle reach of them"
     # Those go first that reach as well what hangs on unknown frames, as it is taken for.
     more = TakenPlaces.of(program, assumed=True)
     reach = more.taken_by(vendor, fit) if more.flanges and not assumed else []
-    if len(fit) == 1 or len(program.moves) > _LONGEST:
-        return (*reach, *fit)[0], why
+    if len(program.moves) > _LONGEST:
+        return (*reach, *fit)[0], why, 0
     count = max(2, min(_TRIED, _TRIED_MOVES // len(program.moves)))
-    return _first_that_drives(source, options, (reach or fit, fit), count), why
+    best, faults = _first_that_drives(source, options, (reach or fit, fit), count)
+    return best, why, faults
 
 
-def _middle(arms: list[Listed]) -> tuple[Listed, str] | None:
+def _middle(arms: list[Listed]) -> tuple[Listed, str, int] | None:
     """An arm for a program that says no place, or cannot be read, so that it says why."""
     known = [arm for arm in arms if arm.axes == _USUAL and arm.reach is not None]
     if not known:
         return None
     middle = sorted(known, key=lambda arm: (arm.reach, arm.name))[len(known) // 2]
-    return middle, "one of middle reach, as the program says no place by which to tell"
+    return middle, "one of middle reach, as the program says no place by which to tell", 0
 
 
 def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, SourceOptions]:
@@ -173,8 +193,9 @@ def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, Sour
         raise InputError(f"{source} has no such entry")
     if program is not None and (program.moves or options.entry is not None):
         return program, options
+    begun = {entry.name for entry in program.entries if entry.begun} if program else set()
     routines = read_undriven(source, replace(options, entry=ALL)).entries
-    moving = [routine for routine in routines if routine.moves]
+    moving = [routine for routine in routines if routine.moves and routine.name not in begun]
     moving = [routine for routine in moving if not routine.parameters] or moving
     if not moving:
         raise InputError(f"{source} drives nothing")
@@ -184,8 +205,8 @@ def _undriven(source: str | Path, options: SourceOptions) -> tuple[Program, Sour
 
 def _first_that_drives(
     source: str | Path, options: SourceOptions, arms: tuple[list[Listed], list[Listed]], count: int
-) -> Listed:
-    """The arm of some that drives a program without a fault, or with the fewest.
+) -> tuple[Listed, int]:
+    """The arm of some that drives a program without a fault, or with the fewest; and how many.
 
     Args:
         arms: those that are tried with unknown frames as they are taken for; and, if none of them
@@ -201,8 +222,8 @@ def _first_that_drives(
             if faults < least:
                 best, least = arm, faults
             if not faults:
-                return best
-    return best
+                return best, 0
+    return best, least
 
 
 def _faults(source: str | Path, options: SourceOptions, most: int, placing: bool) -> int:

@@ -96,3 +96,24 @@ def test_nothing_is_proven_of_a_way_that_begins_where_nobody_knows() -> None:
             task(program)
     known = flyby.read(text, robot=ROBOT, start=(0.0, 0.0, 0.0, 0.0, 0.5, 0.0))
     assert not any(move.supposed for move in known.moves)
+
+
+def test_a_configuration_tells_nothing_of_a_target_that_is_not_known() -> None:
+    """It is driven with the nearest; of the places that are known it stays a fault."""
+    pose = f"[[900,%s,900],[0,0,1,0],[0,0,0,0],{UNUSED}]"
+    lines = [
+        f"MoveJ {pose % 0},v200,fine,tool0;",
+        f"p:={pose % 100}; p.robconf.cf4:=2;",
+        'TPReadNum p.trans.z, "How high?";',
+        "MoveJ p,v200,fine,tool0;",
+    ]
+    text = "MODULE M\nPROC main()\nVAR robtarget p;\n%s\nENDPROC\nENDMODULE\n"
+    run = flyby.emulate(flyby.read(text % "\n".join(lines), robot=ROBOT))
+    assert not run.faults
+    (said,) = [n.message for n in run.notes if "contradicts the pose" in n.message]
+    assert said.endswith("as the target is not known")
+    with pytest.raises(InputError, match="nothing can be proven or written"):
+        flyby.optimize(run.program)
+    known = text % "\n".join(lines[:2] + lines[3:])
+    with pytest.raises(MotionError, match="contradicts the pose"):
+        flyby.emulate(flyby.read(known, robot=ROBOT))

@@ -10,7 +10,7 @@ import flyby
 from flyby.core.errors import FlybyError, InputError, OptionError
 from flyby.core.registry import all_listed, find_vendor
 from flyby.tasks.options.guessed_robot import read_or_guess, with_robot
-from flyby.tasks.read import SourceOptions
+from flyby.tasks.read import SourceOptions, read_with
 
 from ..vendors.abb.backup.station import Station, one_robot
 
@@ -135,6 +135,30 @@ def test_postures_alone_are_driven_by_an_arm_of_middle_reach(tmp_path: Path) -> 
     assert robot is not None and "can take the 2 places" in said
     (reach,) = (arm.reach for arm in all_listed(find_vendor("abb")) if arm.name == robot)
     assert reach is not None and 1.2 < reach < 3.0
+
+
+def test_postures_of_six_joints_are_those_of_an_arm_with_six_axes(tmp_path: Path) -> None:
+    move = "MoveAbsJ [[0,0,0,0,0,0]," + UNUSED + "],v100,fine,tool0;"
+    robot, _ = taken(rapid(tmp_path, move))
+    (axes,) = (arm.axes for arm in all_listed(find_vendor("abb")) if arm.name == robot)
+    assert axes == 6
+
+
+@pytest.mark.parametrize(
+    ("configuration", "head", "faults"),
+    [(None, "", 0), ("exact", "", 1), (None, "! IRB 1600-6/1.45", 1)],
+)
+def test_configurations_of_another_arm_give_way_where_the_arm_is_guessed(
+    tmp_path: Path, configuration: str | None, head: str, faults: int
+) -> None:
+    odd = at(700, 200, 700).replace("[0,0,0,0]", "[1,2,1,5]")
+    file = rapid(tmp_path, at(700, 0, 700), odd, at(700, 100, 700), head=head)
+    options = SourceOptions(configuration=configuration)
+    found, notes = with_robot(file, options, gives_way=True)
+    assert len(flyby.emulate(read_with(file, found)).faults) == faults
+    assert ("give way to the nearest" in notes[0].message) == (not faults)
+    plain, _ = with_robot(file, options)
+    assert plain.configuration == configuration
 
 
 def test_who_names_a_robot_is_heard(tmp_path: Path) -> None:

@@ -100,3 +100,55 @@ def test_what_decides_of_a_program_that_goes_nowhere_is_named(tmp_path) -> None:
     program = flyby.read(path, robot="kuka/kr30-3")
     with pytest.raises(MotionError, match=r"goes nowhere: .*, or say which way it goes in line "):
         flyby.emulate(program, robot="kuka/kr30-3")
+
+
+@pytest.mark.parametrize("start", [None, "0,-90,90,0,90,0"])
+def test_a_start_is_named_where_another_one_leads_somewhere_else(start, tmp_path) -> None:
+    """A text that says none has been tried from another one."""
+    path = tmp_path / "main.script"
+    goes = "movej([0,-1.5707963,1.5707963,0,1.5707963,0])" if start else "movel(at)"
+    path.write_text(f"at = get_actual_tcp_pose()\n{goes}\n{goes}\n", "utf-8")
+    program = flyby.read(path, robot="ur/ur5e", start=start)
+    with pytest.raises(MotionError, match="goes nowhere") as refused:
+        flyby.emulate(program, robot="ur/ur5e")
+    assert ("(start)" in str(refused.value)) == bool(start)
+
+
+SERVERS = {
+    "ur/ur5e": (
+        "main.script",
+        "def main():\n  while True:\n    sleep(1)\n  end\n  home()\nend\n"
+        "def home():\n  movej([0,-1,1,-1,-1,0])\n  movej([0,-1,1,-1,-1,1])\nend\nmain()\n",
+    ),
+    "kuka/kr30-3": (
+        "main.src",
+        "DEF main( )\nLOOP\nWAIT SEC 1\nENDLOOP\nhome( )\nEND\nDEF home( )\n"
+        "PTP {A1 0,A2 -90,A3 90,A4 0,A5 30,A6 0}\nPTP {A1 9,A2 -90,A3 90,A4 0,A5 30,A6 0}\nEND\n",
+    ),
+    "abb/irb1200-5-090": (
+        "main.mod",
+        "MODULE m\nPROC main()\nWHILE TRUE DO\nWaitTime 1;\nENDWHILE\nhome;\nENDPROC\n"
+        "PROC home()\nMoveAbsJ [[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;\n"
+        "MoveAbsJ [[9,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v100,fine,tool0;\nENDPROC\n"
+        "ENDMODULE\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("robot", SERVERS)
+def test_where_the_beginning_reaches_no_move_the_others_are_driven(robot, tmp_path) -> None:
+    name, text = SERVERS[robot]
+    path = tmp_path / name
+    path.write_text(text, "utf-8")
+    for named in (["--robot", robot], []):
+        done = CliRunner().invoke(app, ["emulate", str(path), *named])
+        assert done.exit_code == 0, done.output
+        said = " ".join(done.stderr.split())
+        assert "reaches no move: each routine that moves the robot is driven by itself" in said
+        assert "1 of 1 routine driven to the end" in " ".join(done.stdout.split())
+    # Whoever wants one program has to name it.
+    csv = CliRunner().invoke(
+        app, ["emulate", str(path), "--robot", robot, "--csv", str(tmp_path / "a.csv")]
+    )
+    assert csv.exit_code == 1
+    assert "choose as the entry the routine that drives: home (2 moves)" in csv.stderr

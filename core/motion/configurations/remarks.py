@@ -16,8 +16,9 @@ class Remarks:
     """Remarks by the indices of moves, made while their configurations are found.
 
     Args:
-        assumed: names of the tools and work objects that nobody knows, of each move that uses one:
-            its configuration tells nothing of a pose that is not its own, and gives way.
+        assumed: what nobody knows of the place of each move (its tool, its work object, its target,
+            where the robot stands first): its configuration tells nothing of a pose that is not its
+            own, and gives way.
         departures: of each move that is driven with another configuration than programmed, what
             there is to say.
         tolerated: the same of those whose configuration the controller takes all the same.

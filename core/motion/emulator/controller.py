@@ -211,7 +211,8 @@ class Controller:
         for _ in range(_SKIPS):
             route = self._routes.find(program, start, skipped)
             if not route.moves:
-                raise _located(_left_out(skipped) if skipped else goes_nowhere(program), program)
+                nowhere = _left_out(skipped) if skipped else goes_nowhere(program, start)
+                raise _located(nowhere, program)
             try:
                 path = build_path(route, self.model, self.sampling)
             except OverlapError as overlap:

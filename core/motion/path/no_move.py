@@ -9,6 +9,7 @@ from ...errors import FaultCause, MotionError, Span
 from ...program.entry_point import listed
 from ...program.program import Program
 from ...program.question import QuestionKind
+from ...program.target import JointTarget
 
 _MOST = 4
 """Names that a message lists."""
@@ -59,10 +60,17 @@ def no_move(program: Program) -> MotionError:
     )
 
 
-def goes_nowhere(program: Program) -> MotionError:
-    """The error of a program of which every move ends where the robot stands, and what helps."""
+def goes_nowhere(program: Program, start: JointTarget | None) -> MotionError:
+    """The error of a program of which every move ends where the robot stands, and what helps.
+
+    Args:
+        start: where it is said to stand first; None if nobody says.
+    """
     ways = _open_ways(program)
-    helps = [f"let it begin elsewhere ({spelt('start')})"]
+    # A text that says no start, or asks for it, has been read from another one already.
+    said = start is not None or program.start is not None or program.reading is None
+    elsewhere = said and not any(move.supposed for move in program.moves)
+    helps = [f"let it begin elsewhere ({spelt('start')})"] if elsewhere else []
     data = dict.fromkeys(q.key for q in program.questions if q.kind in _DATA and not q.answered)
     if data:
         helps.insert(
@@ -77,7 +85,7 @@ def goes_nowhere(program: Program) -> MotionError:
         )
     return MotionError(
         "the program goes nowhere: this and every other move ends where the robot stands; "
-        f"{', or '.join(helps)}",
+        f"{', or '.join(helps) or 'what it computes has it so'}",
         0,
         cause=FaultCause.NOWHERE,
     )

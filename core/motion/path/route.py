@@ -14,7 +14,7 @@ import numpy as np
 
 from ...arrays import FloatArray
 from ...errors import FaultCause, InputError, MotionError, Note, Span
-from ...program.assumed_places import assumed_places
+from ...program.assumed_places import doubtful_places
 from ...program.move import Move, MoveC, MoveJ
 from ...program.program import Program
 from ...program.target import JointTarget, PoseTarget
@@ -124,7 +124,7 @@ class RouteFinder:
                 check_near(move, i, before)
                 before = move
         notes: list[Note] = []
-        self._finder.remarks = Remarks(assumed_places(program))
+        self._finder.remarks = Remarks(doubtful_places(program))
         q = self._start(program, start, notes)
         legs = RouteLegs(0 if notes else None)
         for stage in self._stages(moves, skipped):
@@ -156,7 +156,7 @@ class RouteFinder:
         first = program.moves[0]
         if program.start is not None or isinstance(first.target, JointTarget):
             return ()
-        self._finder.remarks = Remarks(assumed_places(program))
+        self._finder.remarks = Remarks(doubtful_places(program))
         return tuple(map(self._as_target, self._finder.starts(first, 0)))
 
     def standing_at(self, move: Move, near: JointTarget | None) -> JointTarget:
