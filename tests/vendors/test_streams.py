@@ -192,3 +192,25 @@ def test_a_stream_is_asked_for(language, tmp_path) -> None:
     (tmp_path / FILES[language]).write_text(TEXT[language])
     asked = flyby.ask(tmp_path / FILES[language], robot=ROBOTS[language]).toml
     assert f'#{KEYS[language]} = "joints.csv"' in asked
+
+
+def test_a_thread_that_a_computer_drives_is_stopped_where_a_file_ends(tmp_path: Path) -> None:
+    """What the file says is all that is driven before; of any other move nobody knows how much."""
+    (tmp_path / "j.csv").write_text(
+        "time,j1,j2,j3,j4,j5,j6\n0,0,-90,90,0,90,0\n1,9,-90,90,0,90,0\n"
+    )
+    answers = tmp_path / "answers.toml"
+    answers.write_text('[streams]\nspeedj = "j.csv"\n', "utf-8")
+    source = tmp_path / "main.script"
+    stream = "  while True:\n    speedj(q, 1.0, 0.008)\n  end"
+    text = (
+        "q = [0,0,0,0,0,0]\nthread T():\n{}\nend\nh = run T()\n"
+        "while not get_digital_in(1):\n  sync()\nend\nkill h\n"
+    )
+    for before, faults in (("", 0), ("  movej([1,-1,1,0,1,0])\n", 1)):
+        source.write_text(text.format(before + stream), "utf-8")
+        program = flyby.read(source, robot="ur/ur5e", answers=answers)
+        assert len(flyby.emulate(program).faults) == faults
+    source.write_text(text.format(stream), "utf-8")
+    with pytest.raises(FlybyError, match=r"stopped on the way.*\[streams\] speedj = \"joints.csv"):
+        flyby.emulate(flyby.read(source, robot="ur/ur5e"))

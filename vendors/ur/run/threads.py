@@ -3,7 +3,7 @@
 Only one thread can move the robot at a time, so that a program that starts a moving thread waits
 for it, by ``join``, by a flag or in a loop that does nothing: the thread is carried out where it is
 started. A program that ends such a thread on the way (``kill``) is refused, as nobody knows where
-the robot is by then.
+the robot is by then; unless it only drives where a computer says, and a file says all of that.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
+from ....core.door import spelt
 from ....core.errors import SourceError, Span
 from ....core.source.execution.control_flow.analysis import Analysis
 from ....core.source.execution.outputs import Outputs
@@ -19,7 +20,7 @@ from ....core.source.execution.transcript import Transcript
 from ..syntax.traversal import calls_of
 from ..syntax.tree import Block, Call, StartThread, ThreadEnd
 from ..values.evaluator import Evaluation, evaluate
-from ..values.instructions import STREAMS, Kept, kept, streamed
+from ..values.instructions import MOVES, STREAMS, Kept, driven_by, kept, streamed
 from ..values.scope import Function, Scope, Variable
 from ..values.values import ThreadHandle, Unknown, Value
 from .analysis import ScriptTree
@@ -35,6 +36,7 @@ class Started:
     Args:
         moving: whether it moves the robot and was carried out.
         endless: whether it would go on moving.
+        sent: the functions by which a computer moves the robot in it; none if other moves do.
         waited: whether time has passed since, or something was decided that is not known.
         written: the variables that it may write.
         outputs: the outputs that it may write.
@@ -43,6 +45,7 @@ class Started:
     name: str
     moving: bool
     endless: bool = False
+    sent: frozenset[str] = frozenset()
     waited: bool = False
     decided: int = 0
     written: tuple[Variable, ...] = ()
@@ -131,11 +134,14 @@ def start(run: ThreadsRun, node: StartThread, scope: Scope) -> Value:
     bodies = run.tree.bodies([name])
     thread = Started(name, any(map(run.analysis.moves, bodies)))
     if thread.moving:
+        called = frozenset().union(*map(calls_of, run.tree.reached(name)))
+        if not called & MOVES:
+            thread.sent = called & STREAMS.names
         _carry_out(run, function, node, scope, thread)
     else:
         run.keep(node, _STARTED, name)
-        called = (c for body in run.tree.reached(name) for c in sorted(calls_of(body)))
-        stream = next((called for called in called if kept(called) is STREAMS), None)
+        names = (c for body in run.tree.reached(name) for c in sorted(calls_of(body)))
+        stream = next((called for called in names if kept(called) is STREAMS), None)
         if stream is not None:
             run.guided.append((stream, run.texts.span_of(node)))
             run.out.left_out.append(streamed(stream, run.texts.span_of(node)))
@@ -199,16 +205,26 @@ def end(run: ThreadsRun, statement: ThreadEnd, scope: Scope) -> None:
         if thread is not None:
             _release(run.outputs, thread, span)
     elif statement.word == "kill":
-        if thread.endless or thread.waited or run.decisions != thread.decided:
+        if thread.sent and thread.sent <= driven_by(run.course.answers.streams):
+            thread.endless = False
+        elif thread.endless or thread.waited or run.decisions != thread.decided:
             error = SourceError(
                 f"thread {thread.name} moves the robot and is stopped on the way: where the robot "
-                "is by then is only known at run time",
+                f"is by then is only known at run time{_says(thread)}",
                 span,
             )
             thread.endless = False
             run.stopped_somewhere(error, span)
     elif thread.endless:
         run.finish(f"thread {thread.name}, which is waited for, never ends", span)
+
+
+def _says(thread: Started) -> str:
+    """Where it can be said where a thread drives."""
+    if not thread.sent:
+        return ""
+    files = ", ".join(f'{name} = "joints.csv"' for name in sorted(thread.sent))
+    return f"; say where it drives in files ({spelt('answers')}: [streams] {files})"
 
 
 def _release(outputs: Outputs, thread: Started, span: Span) -> None:
