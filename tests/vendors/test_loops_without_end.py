@@ -209,3 +209,11 @@ def test_a_counter_of_krl_that_an_int_does_not_hold_stops_the_program() -> None:
     move = MOVE["kuka"]
     found = program("kuka", f"{move}\nFOR k=1 TO 1e38\nn=n+1\nENDFOR\n{move}")
     assert found.moves[-1].stops and "too large for an INT" in found.moves[-1].open
+
+
+@pytest.mark.parametrize(("end", "step"), [("1e38", ""), ("-1e38", " STEP -1")])
+def test_an_end_of_a_for_of_krl_that_no_int_reaches_is_foreseen(end, step) -> None:
+    """No pass shows to come nearer to such a number: it would be run as often as loops may."""
+    body = f"FOR k=1 TO {end}{step}\n{MOVE['kuka']}\nENDFOR"
+    with pytest.raises(EndlessError, match=r"has 2\.14748e\+09 passes left, with 1 moves each"):
+        find_vendor("kuka").read(FRAME["kuka"].format(body), SUFFIX["kuka"])

@@ -18,11 +18,13 @@ from flyby.core.motion.emulator.controller import Controller
 from flyby.core.program.arc_orientation import ArcOrientation
 from flyby.core.program.event import EventAnchor
 from flyby.core.program.move import MoveC, MoveJ, MoveL, Opaque, Wait
+from flyby.core.program.question import QuestionKind
 from flyby.core.program.target import JointTarget, PoseTarget
 from flyby.core.program.tool import FLANGE, WORLD
 from flyby.core.program.zone import FINE, Angle, ContourFraction, Radius, VendorZone
 from flyby.core.registry import find_robot, find_vendor
 from flyby.core.robot.joint import ExternalAxis, ExternalRole, Joint, JointKind
+from flyby.core.source.execution.answers import Answers
 from flyby.core.spatial.pose import IDENTITY, Pose
 from flyby.vendors.kuka.motion.arcs import beyond
 from flyby.vendors.kuka.motion.configuration import KukaConfiguration
@@ -450,6 +452,21 @@ def test_inverse_tells_the_program_of_a_pose_that_it_finds_no_axes_for(krl, robo
     assert any("INVERSE" in n.message and "cannot be reached" in n.message for n in program.notes)
     with pytest.raises(SourceError, match="cannot be reached"):
         krl(body.replace("q=INVERSE(p,XA,err)", "q=INVERSE(p,XA)"), data, robot=robot)
+
+
+@pytest.mark.parametrize(
+    "call", ["q=INVERSE(p,XA,err)", "q=INVERSE(p,XA)", "p=FORWARD(q,err)", "p=FORWARD(q)"]
+)
+def test_kinematics_of_a_place_that_nobody_knows_leave_the_rest_of_the_program(krl, robot, call):
+    """Neither what they give nor whether they fail is known; the program goes on."""
+    body = f"PTP XA\np.X=seen\nq.A1=seen\n{call}\nIF err==0 THEN\nn=1\nENDIF\nLIN p\nPTP XA"
+    data = DATA_LIST + "DECL E6POS p\nDECL E6AXIS q\nINT err=0,n\nREAL seen"
+    body = "$TOOL=$NULLFRAME\n$BASE=$NULLFRAME\n" + body
+    program = krl(body, data, robot=robot, answers=Answers(goes_on=True))
+    assert [bool(move.open) for move in program.moves] == [False, True, False]
+    assert "seen" in program.moves[1].open
+    asked = "err" in call
+    assert any(q.kind is QuestionKind.BRANCH for q in program.questions) == asked
 
 
 def test_with_holds_for_one_motion(krl):

@@ -64,6 +64,8 @@ class Kinematics:
         """``FORWARD(axes, error)``: the pose of ``$TOOL`` in ``$BASE``."""
         axes = arguments[0] if arguments else None
         pose = None
+        if (unknown := self._unknown(call, axes, 1, scope)) is not None:
+            return unknown
         if self.robot is not None and isinstance(axes, Struct):
             placement = self.placements.current(call.span)
             target = self.targets.joints(axes, call.span).target
@@ -71,13 +73,15 @@ class Kinematics:
             pose = self.position.forward(target, placement)
         if pose is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        self._error(call, 0, scope)
+        self._error(call, 1, 0, scope)
         return frame_of(pose, "e6pos")
 
     def inverse(self, call: Call, arguments: list[Value | None], scope: Scope) -> Value:
         """``INVERSE(position, near, error)``"""
         position = arguments[0] if arguments else None
         found = None
+        if (unknown := self._unknown(call, position, 2, scope)) is not None:
+            return unknown
         if self.robot is not None and isinstance(position, Struct):
             placement = self.placements.current(call.span)
             target = self.targets.pose(position, placement, True, False, call.span).target
@@ -91,8 +95,7 @@ class Kinematics:
             try:
                 found = self.position.backward(target, placement, start, call.span)
             except SourceError as error:
-                told = len(arguments) > 2 and start is not None
-                if not told or not self._error(call, _UNREACHABLE, scope):
+                if start is None or not self._error(call, 2, _UNREACHABLE, scope):
                     raise
                 reason = f"what {call.text} gives for a pose that it finds no axes for"
                 self.evaluator.data.note(
@@ -103,13 +106,20 @@ class Kinematics:
                 return Unknown(reason, call.span)
         if found is None:
             return Unknown(f"the value of {call.text} (name the robot)", call.span)
-        self._error(call, 0, scope)
+        self._error(call, 2, 0, scope)
         return found
 
-    def _error(self, call: Call, number: int, scope: Scope) -> bool:
-        """The last argument takes the number of an error, 0 for none; whether there is one."""
-        last = call.arguments[-1] if call.arguments else None
-        if not isinstance(last, Name) or len(call.arguments) < 2:
+    def _unknown(self, call: Call, given: Value | None, at: int, scope: Scope) -> Unknown | None:
+        """What a call gives for a place of which something is not known: nor is its error."""
+        unknown = None if given is None else find_unknown(given)
+        if unknown is not None:
+            self._error(call, at, unknown, scope)
+        return unknown
+
+    def _error(self, call: Call, at: int, number: int | Unknown, scope: Scope) -> bool:
+        """The argument ``at`` takes the number of an error, 0 for none; whether there is one."""
+        takes = call.arguments[at] if at < len(call.arguments) else None
+        if not isinstance(takes, Name):
             return False
-        self.evaluator.assign(last, number, scope, call.span)
+        self.evaluator.assign(takes, number, scope, call.span)
         return True

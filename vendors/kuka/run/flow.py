@@ -260,8 +260,11 @@ class Flow:
         def distance() -> float | None:
             counter = self._evaluator.names.value(statement.counter, scope)
             up = not _is_number(step) or step > 0  # type: ignore[operator]
-            known = _is_number(stop) and _is_number(step)
-            behind = stop + step if known else None  # type: ignore[operator]  # the last is driven
+            behind = None
+            if _is_number(stop) and _is_number(step):
+                behind = stop + step  # type: ignore[operator]  # the last is driven
+                # No INT comes there; and no pass would show to come nearer to 1e38.
+                behind = max(-(2.0**31), min(2.0**31, behind))
             return loops.to_bound("<" if up else ">", counter, behind)
 
         def ended() -> None:
