@@ -69,7 +69,9 @@ def with_robot(
         said = f"{own.robot.name} is taken, which is the robot of the backup around {source}"
         return replace(options, robot=own.robot), (Note(said),)
     if own is not None and own.written:
-        return options, ()  # it is another one than flyby knows: what reads it says so
+        why = "; ".join(own.lacks)
+        way = "" if spelt(option) in why else f"; {spelt(option)} names one that will do"
+        raise OptionError(f"{source} lies in a backup, whose robot is {own.written}: {why}{way}")
     found = _guessed(source, options)
     if found is None:
         return options, ()

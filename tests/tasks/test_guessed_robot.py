@@ -224,9 +224,11 @@ def test_a_program_in_a_backup_is_for_the_robot_of_that(tmp_path: Path) -> None:
     strange = Station(products=("English", "IRB 9990-77/9.9"), moc=one_robot(kind="9990_9.9_77"))
     other = strange.write(tmp_path / "Backup_2")
     (main,) = other.rglob("MainModule.mod")
-    assert taken(main) == (None, "")  # there is one, and it is not known
-    with pytest.raises(InputError, match="which robot"):
+    with pytest.raises(InputError) as caught:  # there is one, and it is not known
         read_or_guess(main, SourceOptions())
+    said = str(caught.value)
+    assert f"{main} lies in a backup, whose robot is ROB1_9990_9.9_77: " in said
+    assert said.endswith("name one that will do, robot=NAME")
 
 
 def test_a_backup_that_names_no_arm_is_driven_by_one_that_can(tmp_path: Path) -> None:

@@ -152,3 +152,22 @@ def test_where_the_beginning_reaches_no_move_the_others_are_driven(robot, tmp_pa
     )
     assert csv.exit_code == 1
     assert "choose as the entry the routine that drives: home (2 moves)" in csv.stderr
+
+
+def test_where_a_computer_sends_the_motion_the_message_says_what_drives_it(tmp_path) -> None:
+    """And that does, without a robot that is named."""
+    path, answers = tmp_path / "main.src", tmp_path / "answers.toml"
+    tests = "IF RSI_ON(#ABSOLUTE)<>0 THEN\nHALT\nENDIF"
+    path.write_text(KRL.format(f"PTP $POS_ACT\n{tests}\nRSI_MOVECORR( )"), "utf-8")
+    done = CliRunner().invoke(app, ["emulate", str(path)])
+    said = " ".join(done.output.split())
+    assert done.exit_code == 1 and "line" in said and "nobody says which way" not in said
+    remedy = '[streams] RSI_MOVECORR = "joints.csv", whose first line is time,j1,j2,…'
+    assert f"a computer sends its motion at RSI_MOVECORR in line 6: say that in {remedy}" in (
+        said.replace("a file of joints over time (--io: ", "")
+    )
+    answers.write_text('[streams]\nRSI_MOVECORR = "joints.csv"\n', "utf-8")
+    rows = ["time,j1,j2,j3,j4,j5,j6", "0,0,-90,90,0,10,0", "1,5,-90,90,0,10,0"]
+    (tmp_path / "joints.csv").write_text("\n".join(rows), "utf-8")
+    done = CliRunner().invoke(app, ["emulate", str(path), "--io", str(answers)])
+    assert done.exit_code == 0 and "cycle time" in done.output

@@ -30,8 +30,16 @@ def no_move(program: Program) -> MotionError:
     moving = any(entry.moves for entry in program.entries)
     asked = [question for question in program.questions if not question.answered]
     away = list(dict.fromkeys(q.key for q in asked if q.kind is QuestionKind.ROUTINE))
-    ways = _open_ways(program)
+    streams = [question for question in asked if question.kind is QuestionKind.STREAM]
+    ways = [] if streams else _open_ways(program)
     helps = []
+    if streams:
+        sent, line = streams[0].key, streams[0].span.line
+        helps.append(
+            f"a computer sends its motion at {sent} in line {line}: say that in a file of joints "
+            f'over time ({spelt("answers")}: [streams] {sent} = "joints.csv", whose first line is '
+            "time,j1,j2,…, in s and degrees)"
+        )
     if away:
         helps.append(
             f"{_named(away)} {'is' if len(away) == 1 else 'are'} not at hand: put the files "

@@ -103,9 +103,8 @@ def _by_name(unit: str, written: str, names: list[str], find: FindRobot) -> Back
     except InputError as error:
         return BackupRobot(unit, written, None, (str(error),))
     if robot is None:
-        return BackupRobot(
-            unit, written, None, (f"no listed arm is called so, or several are; {_ELSEWHERE}",)
-        )
+        lack = f"no listed arm is called {written}, or several are; {_ELSEWHERE}"
+        return BackupRobot(unit, written, None, (lack,))
     lack = (
         f"no {MACHINE} can be read: lengths, limits and place are those of its type; {_ELSEWHERE}"
     )

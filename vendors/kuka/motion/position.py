@@ -156,7 +156,8 @@ class Position:
         return None if self._last is None else self._last.fields.get(self._names[index])
 
     def _external_fields(self, q: Sequence[float] | FloatArray) -> dict[str, Value]:
-        assert self._robot is not None
+        if self._robot is None:
+            return {}
         values = [float(v) for v in q[self._robot.arm_size :]]
         fields: dict[str, Value] = {}
         for name, axis, value in zip(self._names, self._robot.external_axes, values, strict=False):
