@@ -17,7 +17,7 @@ class OwnPosition:
 
     Args:
         move_index: index of the move that comes next.
-        suppose: is told what it depends on where the robot stands; see `Course.suppose`.
+        suppose: called with what it depends on where the robot stands; see `Course.suppose`.
         asked: how often the program has asked.
     """
 

@@ -12,7 +12,7 @@ from ..host import Host
 from .analysis import Analysis
 from .branches import Branches, Skip
 from .loops import Head, Loop, Passes, Start
-from .states import FOLLOWED, States, named
+from .states import FOLLOWED, LoopStates, named
 from .steps import NOTHING, PLACE, Block, Exit
 
 FOLLOWED_UNMOVED = 1000
@@ -41,7 +41,7 @@ class Endings(Generic[Block]):
         self._analysis = analysis
         self._host = host
         self._branches = branches
-        self._states = States(analysis, host)
+        self._states = LoopStates(analysis, host)
         self._long: set[Span] = set()
 
     def start(self) -> Start:

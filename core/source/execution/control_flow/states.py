@@ -22,7 +22,7 @@ _IDLE = 10
 """Passes in a row without a move after which no more is read."""
 
 
-class States(Generic[Block]):
+class LoopStates(Generic[Block]):
     """Follows the states of the loops of one run.
 
     Args:
