@@ -111,6 +111,8 @@ ENDMODULE
             "n:=0;\nWHILE {n}>n DO\nn:=n+1;\nENDWHILE\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
             "n:=0;\nFOR i FROM 1 TO {n} DO\nn:=n+1;\nENDFOR\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
             "early;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
+            "early;\nMoveL Offs(CRobT(),0,0,20),v500,fine,tool0;",
+            "IF {n}>3 MoveL two{{2}},v500,fine,tool0;\np:=CRobT();\nMoveL p,v500,fine,tool0;",
             "n:=0;\nIF {n}>3 GOTO on;\nn:=10;\non:\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
             "n:=0;\nWHILE n<5 DO\nn:=n+1;\nIF {n}>3 GOTO out;\nENDWHILE\nout:\n"
             "MoveL Offs(p0,0,n,0),v500,fine,tool0;",
@@ -121,6 +123,8 @@ ENDMODULE
             "IF {n}>3 n:=10;\nFOR i FROM 1 TO n DO\nMoveL Offs(p0,0,i,0),v500,fine,tool0;\nENDFOR",
             "IF {n}>3 n:=10;\nset 3;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
             "IF {n}>3 n:=10;\ngo p0;",
+            "IF {n}>3 MoveL two{{2}},v500,fine,tool0;\nMoveJ p0,v500,fine,tool0;\n"
+            "MoveL Offs(CRobT(),0,0,20),v500,fine,tool0;",
             "early;\nn:=0;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
             "n:=0;\nIF {n}>3 GOTO on;\nn:=10;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;\non:",
             "again:\nn:=0;\nIF {n}>3 GOTO again;\nn:=10;\nlater:\n"
@@ -199,6 +203,9 @@ ENDFCT
             "FOR i=1 TO {n}\nWAIT SEC 0\nENDFOR\nPTP p[i]",
             "i=1\nWHILE {n}>3\ni=i+1\nENDWHILE\nPTP p[i]",
             "early(i)\nPTP p[i]",
+            "IF {n}>3 THEN\nPTP p[2]\nENDIF\nLIN_REL {{Z 20}}",
+            "IF {n}>3 THEN\nPTP p[2]\nENDIF\nPTP {{Z 920}}",
+            "early(i)\nLIN_REL {{Z 20}}",
             "i=1\nIF {n}>3 THEN\nGOTO ON\nENDIF\ni=2\nON:\nPTP p[i]",
         ),
         (
@@ -208,6 +215,7 @@ ENDFCT
             "IF {n}>3 THEN\n$BASE.X=20\nENDIF\n$BASE={{X 0,Y 0,Z 0,A 0,B 0,C 0}}\nPTP p[2]",
             "IF {n}>3 THEN\ni=2\nENDIF\nFOR n=1 TO i\nWAIT SEC 0\nENDFOR\ngo(p[1])",
             "early(i)\ni=1\nPTP p[i]",
+            "IF {n}>3 THEN\nPTP p[2]\nENDIF\nPTP p[1]\nLIN_REL {{Z 20}}",
             "i=1\nIF {n}>3 THEN\nGOTO ON\nENDIF\ni=2\nPTP p[i]\nON:",
         ),
     ),
@@ -271,6 +279,9 @@ end
             "    q = two[0]\n  end\n  movel(q)",
             "if {n} > 3:\n    set_tcp(p[0,0,0.2,0,0,0])\n  end\n  movel(two[0])",
             "if {n} > 3:\n    h = 0.01\n  end\n  movel(two[0], r=h)",
+            "early()\n  movel(pose_add(get_actual_tcp_pose(), p[0,0,0.01,0,0,0]))",
+            "if {n} > 3:\n    movel(two[1])\n  end\n"
+            "  movel(pose_add(get_target_tcp_pose(), p[0,0,0.01,0,0,0]))",
             "early()\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
             "k = 0\n  while {n} > k:\n    k = k + 0.01\n  end\n"
             "  movel(pose_add(two[0], p[0,0,k,0,0,0]))",
@@ -282,6 +293,8 @@ end
             "if {n} > 3:\n    h = 0.1\n  end\n  h = 0\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
             "if {n} > 3:\n    h = 0.1\n  end\n  put(0)\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
             "if {n} > 3:\n    h = 0.1\n  end\n  go(two[0])",
+            "if {n} > 3:\n    movel(two[1])\n  end\n  movel(two[0])\n"
+            "  movel(pose_add(get_target_tcp_pose(), p[0,0,0.01,0,0,0]))",
             "early()\n  h = 0\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
         ),
     ),

@@ -38,6 +38,8 @@ class PresentPosition:
     Attributes:
         asked: how often the program has asked where the robot stands.
         last: the last move; None before the first.
+        supposed: what it depends on where the robot stands, if it was driven there on a way that
+            was chosen by rule, or by a move that is `Move.supposed`; empty if on nothing.
     """
 
     def __init__(self, robot: Robot | None, start: JointTarget | None, label: Label) -> None:
@@ -47,6 +49,7 @@ class PresentPosition:
         self.start = start
         self.asked = 0
         self.last: Move | None = None
+        self.supposed = ""
         self._label = label
         self._standing: Standing | None = None
         self._ahead: list[tuple[Move, Span]] = []
@@ -61,16 +64,10 @@ class PresentPosition:
         """The work object that was moved in last."""
         return WORLD if self.last is None else self.last.work_object
 
-    @property
-    def supposed(self) -> str:
-        """What it depends on where the robot stands, if its last move is `Move.supposed`; empty
-        if on nothing."""
-        said = "" if self.last is None else self.last.supposed
-        return said and f"where the robot stands ({said})"
-
     def moved(self, move: Move, statement: Span) -> None:
         """The robot has driven to the target of a move."""
         self.last = move
+        self.supposed = move.supposed and f"where the robot stands ({move.supposed})"
         if self.robot is not None:
             self._ahead.append((move, statement))
 
@@ -78,6 +75,10 @@ class PresentPosition:
         """The robot has driven to where nobody knows."""
         self.last = self.start = self._standing = None
         self._ahead.clear()
+
+    def suppose(self, reason: str) -> None:
+        """The robot stands where it does by a way that was chosen by rule."""
+        self.supposed = self.supposed or f"where the robot stands ({reason})"
 
     def why_unknown(self) -> str:
         """What is missing where nobody knows where the robot stands."""

@@ -28,6 +28,7 @@ class Guard:
         reason: what it depends on.
         routine: in which it stands, by its number.
         to_label: whether the ways come together at a label, and not at the routine's end.
+        place: where the robot stood.
         outer: that which is open round it.
 
     Attributes:
@@ -37,6 +38,7 @@ class Guard:
     reason: str
     routine: int
     to_label: bool
+    place: object
     outer: Guard | None
     written: list[Supposable] = field(default_factory=list)
 

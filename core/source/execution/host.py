@@ -85,7 +85,8 @@ class Host(Protocol):
         what reads them, until they are set anew.
 
         Args:
-            names: of data, found from where the program stands, or in what was called from there.
+            names: of data, found from where the program stands, or in what was called from there;
+                `steps.PLACE` for where the robot stands.
             settings: by the names of `Step.sets`.
             reason: what they depend on.
         """

@@ -20,7 +20,7 @@ from ...program.program import Program
 from ..execution.control_flow.analysis import Analysis
 from ..execution.control_flow.flow import Flow
 from ..execution.control_flow.loops import Loop
-from ..execution.control_flow.steps import NOTHING
+from ..execution.control_flow.steps import NOTHING, PLACE
 from ..execution.course import Course
 from ..execution.limits import Meter
 from ..execution.outputs import Outputs
@@ -119,6 +119,7 @@ class _Interpreter:
         self.meter = Meter(options.limits, options.executed)
         self.outputs = Outputs()
         self.place: object = None
+        self._stands_by = ""  # what it depends on where it stands, see `leave_supposed`
         self._standing: tuple[Source | None, ...] = ()
         self._counted_on = False
         self._out = Transcript(program.text_of, self.course)
@@ -200,6 +201,8 @@ class _Interpreter:
 
     def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
         """See `core.source.execution.host.Host`."""
+        if PLACE in names:
+            self._stands_by = reason
         self._values.leave_supposed(names, reason)
 
     def open_move(self, error: SourceError, span: Span) -> bool:
@@ -413,7 +416,7 @@ class _Interpreter:
         self._counted_on = True
         if not isinstance(self.place, move.Move):
             return None
-        self.course.suppose(self.place.supposed)
+        self.course.suppose(self.place.supposed or self._stands_by)
         return self.place
 
     def number(self, datum: Expression) -> float:
@@ -488,5 +491,5 @@ class _Interpreter:
         if self.course.supposed:
             move = replace(move, supposed=f"where it goes depends on {self.course.supposed}")
         self._out.emit_move(move, MoveParts(statement.span, target, speed, zone, via))
-        self.place = move
+        self.place, self._stands_by = move, ""
         self._data.moved()

@@ -10,6 +10,7 @@ from weakref import proxy
 
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move
+from ....core.source.execution.control_flow.steps import PLACE
 from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
@@ -124,6 +125,8 @@ class RapidHost(ABC):
 
     def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
         """See `core.source.execution.host.Host`."""
+        if PLACE in names:
+            self.position.suppose(reason)
         scopes = [*self._frames[-1].scope.outwards(), *self.data.scopes()]
         for cell in [s.cells[n] for s in scopes for n in names if n in s.cells]:
             if not cell.constant:

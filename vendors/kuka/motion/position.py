@@ -69,6 +69,10 @@ class Position:
         """See `PresentPosition.supposed`."""
         return self._commanded.supposed
 
+    def suppose(self, reason: str) -> None:
+        """See `PresentPosition.suppose`."""
+        self._commanded.suppose(reason)
+
     @property
     def place(self) -> object:
         """Where the robot stands: another object after every move to another place."""

@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from ....core.errors import SourceError, Span
+from ....core.source.execution.control_flow.steps import PLACE
 from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
@@ -107,6 +108,8 @@ class KrlHost:
 
     def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
         """See `core.source.execution.host.Host`."""
+        if PLACE in names:
+            self._position.suppose(reason)
         for cell in self._data.named(names | settings, self._scopes[-1:]):
             if not cell.constant:
                 cell.supposed = cell.supposed or reason

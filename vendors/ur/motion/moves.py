@@ -261,7 +261,11 @@ class _MoveReader:
         sources = covering(goal.sources if value is goal.value else (), _SIX)
         near = None
         if "qnear" in given:
-            near = self._located(given["qnear"].value, "qnear")
+            self.run.course.supposed = ""
+            near = locate(self.run, given["qnear"].value, self.scope)
+            reason = self.run.course.supposed
+            if reason != self.run.position.supposed:  # near to itself an arm is anyhow
+                self._suppose("qnear", reason)
         unknown = None if near is None else find_unknown(near.value)
         here = near is None or self.run.position.is_here(near.value)
         if unknown is not None and not here:

@@ -52,6 +52,10 @@ class Position:
         """See `PresentPosition.supposed`."""
         return self._commanded.supposed
 
+    def suppose(self, reason: str) -> None:
+        """See `PresentPosition.suppose`."""
+        self._commanded.suppose(reason)
+
     @property
     def has_robot(self) -> bool:
         """Whether kinematics can be asked."""

@@ -18,6 +18,7 @@ from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.control_flow.analysis import Analysis
 from ....core.source.execution.control_flow.flow import Flow
+from ....core.source.execution.control_flow.steps import PLACE
 from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
@@ -160,6 +161,8 @@ class Interpreter:
 
     def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
         """See `core.source.execution.host.Host`."""
+        if PLACE in names:
+            self.position.suppose(reason)
         scope = self.frames[-1].scope if self.frames else self.root
         for cell in filter(None, map(scope.find, sorted(names))):
             cell.supposed = cell.supposed or reason

@@ -52,7 +52,7 @@ from .analysis import Analysis, Way
 from .branches import ActiveBlocks, Branches
 from .endings import Endings
 from .loops import Loop, Passes, Start
-from .steps import NOTHING, Block, Exit
+from .steps import NOTHING, PLACE, Block, Exit
 
 
 class Flow(Generic[Block]):
@@ -101,9 +101,16 @@ class Flow(Generic[Block]):
         course, routine = self._host.course, self._nesting.routine
         if any(how is Exit.ROUTINE for how, _ in ways):
             self._returns = self._returns or reason
-            course.guard = Guard(reason, routine, False, course.guard)
+            course.guard = Guard(reason, routine, False, self._host.place, course.guard)
         elif any(how is Exit.JUMP and (routine, name) not in self._passed for how, name in ways):
-            course.guard = Guard(reason, routine, True, course.guard)
+            course.guard = Guard(reason, routine, True, self._host.place, course.guard)
+
+    def _close(self, guard: Guard) -> None:
+        """The two ways have come together."""
+        host = self._host
+        host.course.guard = guard.close()
+        if guard.place is not host.place:
+            host.leave_supposed(frozenset({PLACE}), NOTHING, guard.reason)
 
     def _suppose(
         self, blocks: Iterable[Block], reason: str, names: frozenset[str] = NOTHING
@@ -112,6 +119,8 @@ class Flow(Generic[Block]):
         for block in blocks:
             names |= self._analysis.written(block)
             settings |= self._analysis.settings(block)
+            if self._analysis.moves(block):
+                names |= {PLACE}
         if names or settings:
             self._host.leave_supposed(names, settings, reason)
 
@@ -197,7 +206,7 @@ class Flow(Generic[Block]):
         while course.guard is not None and course.guard.to_label:
             if course.guard.routine != routine:
                 break
-            course.guard = course.guard.close()
+            self._close(course.guard)
         for place in [p for p in self._jumps if p[:2] == (self._nesting.routine, label)]:
             del self._jumps[place]
         self._reached[self._nesting.routine, label] = self._endings.start()
@@ -260,7 +269,7 @@ class Flow(Generic[Block]):
             nesting.depth -= 1
             own, course = nesting.routine, self._host.course
             while course.guard is not None and course.guard.routine == own:
-                course.guard = course.guard.close()
+                self._close(course.guard)
             course.suppose(self._returns)
             self._returns = returns
             self._passed = {p for p in self._passed if p[0] != own}
