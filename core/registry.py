@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 _OFFERED = 12
 """Robots that a message offers at most."""
+_PLAIN_TEXT = ".txt"
 _BEGINNING = 20_000
 """Characters of a file that show its language."""
 _NEAR = 6
@@ -206,11 +207,15 @@ class Registry:
     def readers_of(self, path: str | Path) -> list[Vendor]:
         """The vendors whose program a file may be: one, unless nothing in it tells.
 
+        Programs of all languages are saved as plain text: there what stands in it tells as well.
+
         Raises:
             InputError: no vendor's reader takes such files.
         """
         suffix = Path(path).suffix.lower()
         found = [v for v in self.vendors.values() if suffix in v.suffixes]
+        if found and suffix == _PLAIN_TEXT:
+            return by_content(Path(path), found, list(self.vendors.values()))
         if found:
             return found if len(found) == 1 else by_content(Path(path), found)
         known = ", ".join(
@@ -253,10 +258,13 @@ class Registry:
         return [str(plugin) for plugin in self.broken if plugin.plugin == vendor]
 
 
-def by_content(path: Path, vendors: Sequence[Vendor]) -> list[Vendor]:
+def by_content(
+    path: Path, vendors: Sequence[Vendor], others: Sequence[Vendor] = ()
+) -> list[Vendor]:
     """Those of several vendors whose language the beginning of a file is in.
 
-    If none knows it for its own, those are left that cannot tell; if all can, all of them.
+    If none knows it for its own, those are left of ``others`` that do; if none does, those that
+    cannot tell; if all can, all of them.
     """
     from .source.text.files import read_source
 
@@ -271,6 +279,9 @@ def by_content(path: Path, vendors: Sequence[Vendor]) -> list[Vendor]:
             silent.append(vendor)
         elif vendor.reader.recognises(text):
             sure.append(vendor)
+    if not sure:
+        readers = ((vendor, vendor.reader) for vendor in others)
+        sure = [v for v, r in readers if isinstance(r, Recogniser) and r.recognises(text)]
     return sure or silent or list(vendors)
 
 

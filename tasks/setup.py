@@ -237,11 +237,14 @@ def check_language(vendor: Vendor, program: Path) -> None:
     """Refuse a program that another vendor's controller runs.
 
     Raises:
-        InputError: the file is no program of the vendor, judged by its suffix.
+        InputError: the file is no program of the vendor, judged by its suffix, and of plain text by
+            what stands in it.
     """
     if program.suffix.lower() in vendor.suffixes:
         return
     other = registry().reader_of(program)
+    if other is vendor or other.name == vendor.name:  # it may have got what a backup says of it
+        return
     raise InputError(
         f"{program} is a program for {other.name}, the robot is driven by {vendor.name}; "
         f"choose a robot of {other.name} ({called('robots', other.name)} lists them)"

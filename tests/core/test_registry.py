@@ -328,6 +328,18 @@ def test_what_stands_in_a_file_tells_whose_it_is(tmp_path: Path) -> None:
     assert len(registry.readers_of(tmp_path / "absent.x")) == 3
 
 
+def test_a_plain_text_is_of_another_vendor_if_that_knows_it_and_its_own_does_not(tmp_path) -> None:
+    known = {"acme": Knowing("GO"), "apex": Knowing("RUN"), "third": Language()}
+    ends = {"acme": (".txt", ".x"), "apex": (".y",), "third": (".z",)}
+    registry = Registry({n: vendor(n, reader=r, suffixes=ends[n]) for n, r in known.items()})
+    file = tmp_path / "a.txt"
+    for text, whose in (("GO 1", "acme"), ("RUN 1", "apex"), ("GO, RUN", "acme"), ("", "acme")):
+        for file in (tmp_path / "a.txt", tmp_path / "a.x"):
+            file.write_text(text, "utf-8")
+            expected = whose if file.suffix == ".txt" else "acme"
+            assert registry.reader_of(file).name == expected
+
+
 @pytest.mark.parametrize(
     ("name", "text"),
     [

@@ -18,7 +18,7 @@ from ....core.errors import FlybyError
 from ....core.files.tree import entries, inside, nearest_first, subfolders
 from ....core.source.text.files import SourceFile, read_source
 from ....core.source.text.lexer import words
-from ..values.library import CONFIG, stem_of
+from ..values.library import CONFIG, stem_of, suffix_of
 
 SUFFIXES = (".src", ".sub", ".dat")
 _TREE = ("krc", "r1", "program", "system", "tp", "folgen", "up", "makros", "mada", "steu")
@@ -73,7 +73,8 @@ def _named(other: Path) -> list[Path]:
 def _near(path: Path) -> dict[str, list[Path]]:
     """Files around the program by lower-case stem, nearest folder first."""
     around = (entry for folder in _folders(path) for entry in entries(folder))
-    named = (e.path for e in islice(around, _MOST_FILES) if e.name.lower().endswith(SUFFIXES))
+    ends = (*SUFFIXES, ".txt") if path.suffix.lower() == ".txt" else SUFFIXES
+    named = (e.path for e in islice(around, _MOST_FILES) if e.name.lower().endswith(ends))
     return _by_stem(path, map(Path, named))
 
 
@@ -82,7 +83,7 @@ def _by_stem(path: Path, around: Iterable[Path]) -> dict[str, list[Path]]:
     near: dict[str, list[Path]] = {}
     own = path.resolve()
     for entry in around:
-        if entry.suffix.lower() in SUFFIXES and entry.resolve() != own:
+        if suffix_of(entry.name) in SUFFIXES and entry.resolve() != own:
             near.setdefault(stem_of(entry.name), []).append(entry)
     return near
 

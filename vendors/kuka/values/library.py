@@ -28,8 +28,18 @@ _GLOBAL_DATA = re.compile(r"(?im)^[ \t]*(?:decl[ \t]+)?(?:const[ \t]+)?global[ \
 
 def stem_of(name: str) -> str:
     """File name without folder and suffix, nor the brackets of a call, lower case."""
-    stem = name.replace("\\", "/").rpartition("/")[2].rpartition(".")[0]
-    return stem.lower().removesuffix("()")
+    return (
+        _without_text(name.replace("\\", "/").rpartition("/")[2])
+        .rpartition(".")[0]
+        .removesuffix("()")
+    )
+
+
+def _without_text(name: str) -> str:
+    """A name in lower case; of a file that was saved as text (``main.src.txt``) its own."""
+    lower = name.lower()
+    own = lower.removesuffix(".txt")
+    return own if own.endswith((".src", ".dat", ".sub")) else lower
 
 
 def _folder(name: str) -> str:
@@ -38,7 +48,7 @@ def _folder(name: str) -> str:
 
 def suffix_of(name: str) -> str:
     """Suffix of a file name with its dot, lower case."""
-    return "." + name.rpartition(".")[2].lower()
+    return "." + _without_text(name).rpartition(".")[2]
 
 
 class Library:
