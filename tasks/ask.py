@@ -70,7 +70,7 @@ def ask_with(source: str | Path, options: SourceOptions) -> Questions:
     name = Path(reading.main).name if isinstance(reading, Reading) else first.name
     named = "" if first.setup is None or _in_backup(first) else first.setup.robot.name
     asked: dict[tuple[str, str], Question] = {}
-    for question in chain.from_iterable(map(_with_places, programs)):
+    for question in chain.from_iterable(map(_with_examples, programs)):
         asked.setdefault((question.table, question.key), question)
     return Questions.of(tuple(asked.values()), name, named)
 
@@ -103,6 +103,16 @@ def _read(source: str | Path, options: SourceOptions) -> list[Program]:
 def _in_backup(program: Program) -> bool:
     """Whether a program's robot is that of its backup, which needs no name."""
     return setup_of_program(program).backup is not None
+
+
+def _with_examples(program: Program) -> tuple[Question, ...]:
+    """What a program asks, with examples that it is driven with."""
+    from ..core.driving.fitting_answers import answers_that_fit
+
+    asked = _with_places(program)
+    open_ = [q for q in asked if q.table == "values" and not q.answered and q.taken is None]
+    fitting = answers_that_fit(program, open_)
+    return tuple(replace(q, example=fitting.get(q.key, q.example)) for q in asked)
 
 
 def _with_places(program: Program) -> tuple[Question, ...]:

@@ -39,6 +39,7 @@ class Question:
         taken: what holds without an answer, where that can be said in the file; None if not.
         meanwhile: what happens without an answer, in words.
         example: an answer of its type, as it may stand in the file; None where none is known.
+        compared: what the program compares it with, as answers.
         answered: whether the user has answered it.
         count: how often it was asked.
     """
@@ -51,5 +52,6 @@ class Question:
     taken: Answer | None = None
     meanwhile: str = ""
     example: Answer | None = None
+    compared: tuple[Answer, ...] = ()
     answered: bool = False
     count: int = 1

@@ -95,7 +95,7 @@ def _entry(question: Question, several: bool) -> list[str]:
     """
     where = f"{_name(question)}:{question.span.line}" if several else f"line {question.span.line}"
     times = f"asked {question.count} times" if question.count > 1 else ""
-    told = [question.type, question.meanwhile, times]
+    told = [question.type, question.meanwhile, _compared(question), times]
     about = "; ".join(" ".join(part.split()) for part in told if part)
     line = f"{key_text(question.key)} = "
     if question.taken is not None:
@@ -104,6 +104,12 @@ def _entry(question: Question, several: bool) -> list[str]:
         example: Answer = 0.0 if question.example is None else question.example
         line = f"#{line}{answer_text(example)}"
     return [f"# {where}{f': {about}' if about else ''}", line]
+
+
+def _compared(question: Question) -> str:
+    """What the program compares it with."""
+    shown = ", ".join(answer_text(one) for one in question.compared)
+    return f"compared with {shown}" if shown else ""
 
 
 def answer_text(answer: Answer) -> str:

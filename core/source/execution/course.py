@@ -24,6 +24,8 @@ STRUCTURE = "structure, with what is read of it here"
 """What an answer is of which no more is known than the components that are used."""
 _LONGEST_KEY = 80
 """Characters of a statement that is a key as it stands."""
+_MOST_COMPARED = 12
+"""Values that are remembered of those with which something that was asked is compared."""
 _ALIKE = 0.85
 """Share of its letters in which a name that was asked for is like one that nobody asked for."""
 
@@ -159,6 +161,15 @@ class Course:
         asked = self._questions.get(place)
         if asked is not None and (not asked.type or asked.type in instead):
             self._questions[place] = replace(asked, type=type_, example=example)
+
+    def compared(self, text: str, answer: Answer) -> None:
+        """What was asked is compared with what may be an answer."""
+        place = "values", key(text)
+        asked = self._questions.get(place)
+        if asked is None or len(asked.compared) >= _MOST_COMPARED:
+            return
+        if not any(type(one) is type(answer) and one == answer for one in asked.compared):
+            self._questions[place] = replace(asked, compared=(*asked.compared, answer))
 
     def used_with(self, text: str, component: str) -> None:
         """What was asked turns out to be a structure, as a component of it is used."""

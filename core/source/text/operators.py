@@ -10,6 +10,8 @@ from .nodes import Expression, Operation
 
 Cursor = TypeVar("Cursor", bound=TokenCursor[Any])
 Operand = TypeVar("Operand")
+COMPARING = frozenset({"=", "==", "<>", "!=", "<", ">", "<=", ">="})
+"""Operators that compare, in whichever language."""
 
 
 class Operators(Generic[Cursor, Operand]):

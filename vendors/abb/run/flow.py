@@ -16,7 +16,7 @@ from ....core.source.execution.host import Undecided
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.transcript import STEPLESS, Transcript
 from ..syntax.traversal import calls_in
-from ..syntax.tree import Block, Expression, For, If, Operation, Test, Truth, While
+from ..syntax.tree import Block, Expression, For, If, Number, Operation, Test, Text, Truth, While
 from ..values.evaluator import Evaluator
 from ..values.operators import OperandError, apply, operand_type
 from ..values.scope import Scope, Variable
@@ -75,6 +75,9 @@ def run_test(run: Carrying, test: Test, scope: Scope) -> None:
             unknown = find_unknown(subject) or find_unknown(value)
             if unknown is not None:
                 run.evaluator.answers.used_as(test.subject, subject, operand_type("=", value))
+                for other in (one for c in test.cases for one in c.values):
+                    if isinstance(other, Number | Text | Truth):
+                        run.evaluator.answers.compared(subject, other.value)
                 possible = [n >= number for n in range(len(test.cases) + 1)]
                 blocks = [c.body for c in test.cases]
                 _choose(run, blocks, test.otherwise, possible, test.subject, unknown, scope)

@@ -159,6 +159,11 @@ class TypedAnswers:
         if example is not None and value.key == self.key(expression.span):
             self._course.used_as(value.key, type_in_words(type_), example)
 
+    def compared(self, value: Value, other: Value) -> None:
+        """What was asked, or what comes of it, is compared with a value."""
+        if isinstance(value, Unknown) and value.key and isinstance(other, bool | float | str):
+            self._course.compared(value.key, other)
+
     def kind_of(self, unknown: Unknown, span: Span) -> QuestionKind | None:
         """What the expression at a place asks for; None if it comes of something else that is
         asked."""

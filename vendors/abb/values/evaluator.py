@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from ....core.errors import SourceError, Span
 from ....core.source.execution.course import Course
 from ....core.source.execution.provenance import ELSEWHERE
+from ....core.source.text.operators import COMPARING
 from ..syntax import tree
 from .answers import like_signals
 from .data import Globals
@@ -195,6 +196,9 @@ class Evaluator(Names):
             if isinstance(value, Unknown) or isinstance(right, Unknown):
                 self.answers.used_as(operation.first, value, operand_type(symbol, right))
                 self.answers.used_as(operand, right, operand_type(symbol, value))
+                if symbol in COMPARING:
+                    self.answers.compared(value, right)
+                    self.answers.compared(right, value)
             if symbol in ("=", "<>"):
                 value, right = like_signals(value, right)
             try:

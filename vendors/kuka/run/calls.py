@@ -117,7 +117,8 @@ class Calls:
         cell = self._data.find(datum.name, scope)
         if cell is None or cell.constant or cell.signal is not None:
             return
-        expected = () if datum.path else EXPECTED.get(cell.type, ("",))
+        part = datum.path and cell.type != "char"
+        expected = () if part else EXPECTED.get(cell.type, ("",))
         about = About(datum.span, brought_by(call.name), *expected)
         text = self._data.text(datum.span) if datum.path else datum.text
         answer = self._course.value(text, about)

@@ -31,6 +31,7 @@ from ..syntax.tree import (
     Return,
     Routine,
     Switch,
+    Text,
     Truth,
     While,
 )
@@ -142,10 +143,10 @@ class Flow:
                         self._run(case.body, statement, scope)
                         return
         if unknown is not None:
-            first = next((c.values[0] for c in statement.cases if c.values), None)
-            if isinstance(first, Constant | Number):
-                shown = self._evaluator.evaluate(first, scope)
-                self._evaluator.used("==", statement.subject, subject, shown)
+            for value in (one for case in statement.cases for one in case.values):
+                if isinstance(value, Constant | Number | Text):
+                    shown = self._evaluator.evaluate(value, scope)
+                    self._evaluator.used("==", statement.subject, subject, shown)
             bodies = [case.body for case in statement.cases]
             may = [*possible, True]
             self._choose(statement.subject.span, unknown, bodies, statement.otherwise, scope, may)

@@ -12,6 +12,7 @@ from ....core.program.question import QuestionKind
 from ....core.source.execution.course import About, Course
 from ....core.source.execution.provenance import ELSEWHERE, Reads
 from ....core.source.execution.scopes import unknown_name
+from ....core.source.text.operators import COMPARING
 from ..syntax import tree
 from .advance_run import AdvanceRun
 from .answers import answered
@@ -185,6 +186,19 @@ class Evaluator:
             self.course.used_as(value.key, f"a constant, as {shown_as}", shown_as)
         elif isinstance(other, int | float):
             self.used_as(value, "real" if isinstance(other, float) else "int")
+        if symbol in COMPARING and not (isinstance(node, tree.Name) and _is_part(node, value)):
+            self._compared(value, other)
+
+    def _compared(self, value: Value, other: Value) -> None:
+        """What was asked is compared with a value."""
+        if not isinstance(value, Unknown) or not value.key:
+            return
+        if isinstance(other, Choice):
+            self.course.compared(value.key, f"#{other.name.upper()}")
+        elif isinstance(other, bool | str):
+            self.course.compared(value.key, other)
+        elif isinstance(other, int | float):
+            self.course.compared(value.key, float(other))
 
     def _operand(self, expression: tree.Expression, scope: Scope) -> Value:
         """A value that is computed with: the literal it came from is read by an expression."""
@@ -229,6 +243,9 @@ class Evaluator:
             arguments = [self._operand(a, scope) for a in call.arguments if a is not None]
             unknown = next(filter(None, map(find_unknown, arguments)), None)
             if unknown is not None:
+                if call.name == "strcomp":
+                    self._compared(*arguments[:2])
+                    self._compared(*arguments[1::-1])
                 return replace(unknown, here=None, held=self._held(call.name, arguments))
             try:
                 return computed(call.name, arguments)
@@ -270,6 +287,12 @@ class Evaluator:
                 f"and GLOBAL before the declaration, or {offer}"
             )
         return LeftOpenError(unknown_name(kind, node.text, known, offer), node.span)
+
+
+def _is_part(node: tree.Name, value: Unknown) -> bool:
+    """Whether a component is read of what is asked as a whole."""
+    last = node.path[-1] if node.path else None
+    return isinstance(last, str) and not value.key.lower().endswith(f".{last}")
 
 
 def brought_by(name: str) -> QuestionKind:

@@ -3,16 +3,17 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from typing import Protocol
 
+from ....core.errors import SourceError
 from ....core.program.move import Opaque
 from ....core.source.execution.control_flow.flow import Flow
 from ....core.source.execution.control_flow.loops import Loop, to_bound
 from ....core.source.execution.host import Undecided
 from ....core.source.execution.outputs import Outputs
 from ....core.source.execution.transcript import Transcript
-from ..syntax.traversal import assigned, calls_in, returns
+from ..syntax.traversal import assigned, calls_in, calls_written, methods_in, returns
 from ..syntax.tree import Block, Constant, Expression, If, Number, Operation, While
 from ..values.evaluator import Evaluation, condition, evaluate
 from ..values.scope import Scope
@@ -82,6 +83,11 @@ def _undecided(run: FlowRun, statement: If, first: int, reason: Unknown, scope: 
     head = run.texts.span(statement.start, statement.start + len("if"))
     blocks = [one.body for one in statement.branches]
     possible = [k >= first for k in range(len(blocks) + 1)]
+    for k, one in enumerate(statement.branches[first + 1 :], first + 1):
+        called = (*calls_written(one.condition), *methods_in(one.condition))
+        if not called:  # those may do something
+            with suppress(SourceError):
+                possible[k] = condition(run, one.condition, scope) is not False
     choice = run.flow.choose(head, reason.reason, blocks, statement.otherwise, possible)
     frame = run.frames[-1] if run.frames else None
     for body in (*choice.skipped, *([] if choice.block is None else [choice.block])):

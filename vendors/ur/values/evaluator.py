@@ -14,6 +14,7 @@ from typing import Any, Protocol
 from ....core.errors import SourceError, Span
 from ....core.program.question import QuestionKind
 from ....core.source.execution.course import About, Course
+from ....core.source.text.operators import COMPARING
 from ..syntax import tree
 from ..syntax.texts import Texts
 from .answers import answered, used_as
@@ -282,6 +283,11 @@ def _operated(
     kind = "truth" if symbol in _LOGICAL else _KINDS.get(type(other))
     if isinstance(value, Unknown) and kind is not None:
         used_as(run, expression, value, kind)
+        if symbol in COMPARING and value.key and not value.depth:
+            if isinstance(other, bool | str):
+                run.course.compared(value.key, other)
+            elif isinstance(other, int | float):
+                run.course.compared(value.key, float(other))
 
 
 def _decided(symbol: str, left: Value) -> bool:
