@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -285,18 +286,27 @@ def from_ready_posture(
 
     posture = ready_posture(robot)
     program = None
-    if posture is not None:
-        at = JointTarget(posture[: robot.arm_size], posture[robot.arm_size :])
+    ready = () if posture is None else posture
+    for turn in (0.0, _TURNED) if ready else ():
+        # A program that sets one axis may set it to where the ready posture has it.
+        now = tuple(value - math.copysign(turn, value) for value in ready[: robot.arm_size])
+        at = JointTarget(now, ready[robot.arm_size :])
         with suppress(FlybyError):
-            program = read(at)
-            program = program if not still or leads_somewhere(program, at) else None
+            other = read(at)
+            leads = leads_somewhere(other, at)
+            if leads or (program is None and not still):
+                program, start = other, at
+            if leads:
+                break
     if program is None or (without is not None and not still and _open(program) >= _open(without)):
         if without is None:
             assert failed is not None
             raise failed
         return without
     axes = [*robot.joints, *(axis.joint for axis in robot.external_axes)]
-    shown = ", ".join(joint.shown(value) for joint, value in zip(axes, posture or (), strict=True))
+    assert start is not None
+    stands = (*start.joints, *start.external)
+    shown = ", ".join(joint.shown(value) for joint, value in zip(axes, stands, strict=True))
     why = (
         "no move leads from one place that is known to another"
         if still
@@ -395,6 +405,8 @@ def answers_of(options: SourceOptions) -> Answers:
     return replace(answers, cycles=options.cycles, goes_on=True, mends=True)
 
 
+_TURNED = math.radians(7.0)
+"""rad towards zero by which each axis is elsewhere than in the ready posture."""
 _BESIDE_PROGRAMS = frozenset({".sub", ".txt", ".urp", ".urpx"})
 """Suffixes of files that are a folder's program where no other file is."""
 

@@ -171,3 +171,40 @@ def test_where_a_computer_sends_the_motion_the_message_says_what_drives_it(tmp_p
     (tmp_path / "joints.csv").write_text("\n".join(rows), "utf-8")
     done = CliRunner().invoke(app, ["emulate", str(path), "--io", str(answers)])
     assert done.exit_code == 0 and "cycle time" in done.output
+
+
+HERE = {
+    "m.mod": "MODULE m\nVAR jointtarget j;\nVAR robtarget p;\nVAR num n;\nPROC main()\n{}\n"
+    "ENDPROC\nENDMODULE\n",
+    "m.script": "def m():\n{}\nend\n",
+}
+ROBOTS = {"m.mod": "abb/irb2600-12-165", "m.script": "ur/ur10e"}
+
+
+@pytest.mark.parametrize(
+    ("name", "lines"),
+    [
+        ("m.mod", "p:=CRobT();\nMoveL p,v200,fine,tool0;\nMoveJ p,v200,fine,tool0;"),
+        ("m.mod", 'p:=CRobT();\nTPReadNum n,"up";\nMoveL Offs(p,0,0,n),v200,fine,tool0;'),
+        ("m.script", "p = get_actual_tcp_pose()\nmovel(p)\nmovej(p)"),
+    ],
+)
+def test_where_another_start_alone_does_not_help_that_is_said(name, lines, tmp_path) -> None:
+    path = tmp_path / name
+    path.write_text(HERE[name].format(lines), "utf-8")
+    with pytest.raises(MotionError, match="goes nowhere") as caught:
+        flyby.emulate(flyby.read(path, robot=ROBOTS[name]))
+    message = str(caught.value)
+    assert ("nobody says" in message) == ("TPReadNum" in lines)
+    if "nobody says" not in message:
+        assert "targets are made of where it stands" in message
+        assert "let it begin elsewhere" not in message
+
+
+def test_one_axis_set_to_where_the_ready_posture_has_it_is_driven(tmp_path) -> None:
+    path = tmp_path / "m.mod"
+    lines = "j:=CJointT();\nj.robax.rax_6:=0;\nMoveAbsJ j,v200,fine,tool0;"
+    path.write_text(HERE["m.mod"].format(lines), "utf-8")
+    run = flyby.emulate(flyby.read(path, robot=ROBOTS["m.mod"]))
+    assert not run.faults and run.duration > 0
+    assert any("is taken to stand at -7°" in note.message for note in run.program.notes)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ...door import spelt
 from ...errors import FaultCause, MotionError, Span
+from ...program.assumed_places import FROM_THE_START
 from ...program.entry_point import listed
 from ...program.program import Program
 from ...program.question import QuestionKind
@@ -75,10 +76,17 @@ def goes_nowhere(program: Program, start: JointTarget | None) -> MotionError:
         start: where it is said to stand first; None if nobody says.
     """
     ways = _open_ways(program)
+    supposed = {move.supposed for move in program.moves if not move.open}
     # A text that says no start, or asks for it, has been read from another one already.
     said = start is not None or program.start is not None or program.reading is None
-    elsewhere = said and not any(move.supposed for move in program.moves)
-    helps = [f"let it begin elsewhere ({spelt('start')})"] if elsewhere else []
+    helps = []
+    if FROM_THE_START in supposed and "" not in supposed:
+        helps = [
+            "its targets are made of where it stands before: they lead anywhere only where the "
+            "program sets a part of them"
+        ]
+    elif said and supposed <= {""}:
+        helps = [f"let it begin elsewhere ({spelt('start')})"]
     data = dict.fromkeys(q.key for q in program.questions if q.kind in _DATA and not q.answered)
     if data:
         helps.insert(
