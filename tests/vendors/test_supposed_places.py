@@ -166,7 +166,7 @@ IF {n}>3 THEN
 RETURN
 ENDIF
 k=2
-PTP p[k]
+PTP {{A1 5,A2 -90,A3 90,A4 0,A5 20,A6 0}}
 END
 DEFFCT INT twice(k:IN)
 INT k
@@ -205,7 +205,7 @@ ENDFCT
             "early(i)\nPTP p[i]",
             "IF {n}>3 THEN\nPTP p[2]\nENDIF\nLIN_REL {{Z 20}}",
             "IF {n}>3 THEN\nPTP p[2]\nENDIF\nPTP {{Z 920}}",
-            "early(i)\nLIN_REL {{Z 20}}",
+            "early(i)\nPTP {{A6 20}}",
             "i=1\nIF {n}>3 THEN\nGOTO ON\nENDIF\ni=2\nON:\nPTP p[i]",
         ),
         (
