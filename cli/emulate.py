@@ -12,7 +12,7 @@ import typer
 
 from ..core.display import counted
 from ..core.errors import EntryError, FaultCause, FlybyError, InputError, OptionError
-from ..core.motion.path.no_move import no_move
+from ..core.motion.path.no_move import no_move, not_met
 from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with, next_command
@@ -141,10 +141,15 @@ def emulate(
 
 @dataclass(frozen=True)
 class _Nowhere:
-    """A program that drives nothing where it begins: why, and the routine that it begins with."""
+    """A program that drives nothing where it begins.
+
+    Args:
+        why: it does not.
+        others: the routines that may be driven instead; none for all.
+    """
 
     why: str
-    routine: str = ""
+    others: tuple[str, ...] = ()
 
 
 def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | _Nowhere:
@@ -163,9 +168,8 @@ def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | _No
         return read
     if others_drive(read.entries):
         return _Nowhere(f"{program}: {read.name} drives nothing as it begins")
-    why, *others = _CHOOSE.split(str(no_move(read)))
-    begun = next((entry.name for entry in read.entries if entry.begun), "")
-    return _Nowhere(why, begun) if others else read
+    others = [entry.name for entry in not_met(read) if entry.moves]
+    return _Nowhere(_CHOOSE.split(str(no_move(read)))[0], tuple(others)) if others else read
 
 
 def _driven(read: Program, options: EmulateOptions) -> Run:
@@ -197,8 +201,9 @@ def _each(
     """
     with progress("reading the program"):
         entries = read_with(program, replace(source, entry=ALL)).entries
-    left_out = "" if nowhere is None else nowhere.routine
-    moving = [entry for entry in entries if entry.moves and entry.name != left_out]
+    moving = [entry for entry in entries if entry.moves]
+    if nowhere is not None and nowhere.others:
+        moving = [entry for entry in moving if entry.name in nowhere.others]
     if not moving:
         raise InputError(f"{program}: no routine in it moves the robot: there is nothing to drive")
     if nowhere is not None:

@@ -208,3 +208,32 @@ def test_one_axis_set_to_where_the_ready_posture_has_it_is_driven(tmp_path) -> N
     run = flyby.emulate(flyby.read(path, robot=ROBOTS["m.mod"]))
     assert not run.faults and run.duration > 0
     assert any("is taken to stand at -7°" in note.message for note in run.program.notes)
+
+
+MET = {
+    "ur/ur5e": (
+        ("  while True:", "  serve()\nend\ndef serve():\n  while True:"),
+        ("def home", "def other():\n  movej([0,-1,1,-1,-1,2])\nend\ndef home"),
+    ),
+    "kuka/kr30-3": (
+        ("LOOP\nWAIT", "serve( )\nEND\nDEF serve( )\nLOOP\nWAIT"),
+        ("DEF home", "DEF other( )\nPTP {A1 1,A2 -90,A3 90,A4 0,A5 30,A6 0}\nEND\nDEF home"),
+    ),
+    "abb/irb1200-5-090": (
+        ("WHILE", "serve;\nENDPROC\nPROC serve()\nWHILE"),
+        ("PROC home", "PROC other()\nMoveAbsJ p,v100,fine,tool0;\nENDPROC\nPROC home"),
+    ),
+}
+
+
+@pytest.mark.parametrize("robot", MET)
+def test_a_routine_that_the_beginning_has_met_is_not_driven_by_itself(robot, tmp_path) -> None:
+    name, text = SERVERS[robot]
+    for old, new in MET[robot]:
+        text = text.replace(old, new, 1)
+    path = tmp_path / name
+    path.write_text(text, "utf-8")
+    done = CliRunner().invoke(app, ["emulate", str(path), "--robot", robot])
+    assert "reaches no move" in done.stderr
+    driven = [line.split("(")[0].strip() for line in done.stdout.splitlines() if "move" in line]
+    assert {"other", "home"} <= set(driven) and "serve" not in driven

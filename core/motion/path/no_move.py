@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from ...door import spelt
 from ...errors import FaultCause, MotionError, Span
 from ...program.assumed_places import FROM_THE_START
-from ...program.entry_point import listed
+from ...program.entry_point import EntryPoint, listed
 from ...program.program import Program
 from ...program.question import QuestionKind
 from ...program.target import JointTarget
@@ -56,8 +57,7 @@ def no_move(program: Program) -> MotionError:
         helps.append(
             f"the answers to {_named(told)} have it so: others may lead to one ({spelt('answers')})"
         )
-    run = {program.name.casefold(), *(_routine(call.text) for call in program.calls)}
-    others = [e for e in program.entries if e.name.casefold() not in run and not e.begun]
+    others = not_met(program)
     if any(entry.moves for entry in others):
         helps.append(f"choose as the entry the routine that drives: {listed(others)}")
     what = "reaches no move" if moving else "has no move"
@@ -67,6 +67,13 @@ def no_move(program: Program) -> MotionError:
         f"program {program.name!r} {what}: {why}",
         span=None if reading is None else Span(reading.main, 1, 1, 0, 0),
     )
+
+
+def not_met(program: Program) -> list[EntryPoint]:
+    """The routines that a program may begin with, but for those that it was begun with and has met
+    on its way."""
+    met = {program.name.casefold(), *(_routine(call.text) for call in program.calls)}
+    return [e for e in program.entries if e.name.casefold() not in met and not e.begun]
 
 
 def goes_nowhere(program: Program, start: JointTarget | None) -> MotionError:
@@ -108,7 +115,8 @@ def goes_nowhere(program: Program, start: JointTarget | None) -> MotionError:
 
 
 def _routine(call: str) -> str:
-    return call.partition("(")[0].strip().casefold()
+    """The name in a call, before its arguments or its end."""
+    return re.split(r"[\s(;\\]", call.strip(), maxsplit=1)[0].casefold()
 
 
 def _open_ways(program: Program) -> list[str]:
