@@ -70,6 +70,17 @@ def test_homes_are_kukas_own_with_a_note_or_answered(tmp_path: Path) -> None:
     assert answered.moves[0].target.joints[0] == pytest.approx(0.17453, abs=1e-4)
 
 
+def test_a_component_that_nothing_sets_is_asked_for_as_its_declaration_says(tmp_path: Path) -> None:
+    """And not as what it might be where it is used: axes, or a position."""
+    body = (
+        "STRUC order INT kind,E6AXIS joints,E6POS place,state mode\nENUM state idle,busy\n"
+        "DECL order o\n" + START + "PTP o.joints\nPTP o.place\nm=o.kind\nw=o.mode\n"
+    )
+    asked = {q.key.lower(): q.type for q in read(body, tmp_path).questions}
+    assert asked["o.joints"] == "axis values" and asked["o.place"] == "position"
+    assert asked["o.kind"] == "whole number" and not asked["o.mode"]
+
+
 def test_components_that_routines_give_are_not_known(tmp_path: Path) -> None:
     body = (
         "DECL E6POS p\n" + START + 'r=EKI_GetReal("cam","Pos/X",p.X)\n'

@@ -150,7 +150,7 @@ class Names:
             open_to_others = isinstance(value, Unknown) and value.others
             unset = (value is None or open_to_others) and position is None
             kind = QuestionKind.DATUM if unset else None
-            answered = self.answers.answer(node, path, kind, cell.type if not path else "")
+            answered = self.answers.answer(node, path, kind, self._type_of(cell, path))
             if answered is not None:
                 return answered
             if isinstance(value, Unknown):
@@ -163,6 +163,14 @@ class Names:
         if isinstance(value, Struct) and not value.fields:
             return self.answers.answer(node, path) or value
         return value
+
+    def _type_of(self, cell: Variable, path: Path) -> str:
+        """The type of a datum, or of a component where what a value of it looks like is known."""
+        type_ = cell.type
+        for step in path:
+            if isinstance(step, str):
+                type_ = self.data.types.get(type_, {}).get(step, "")
+        return type_ if not path or type_ in EXPECTED else ""
 
     def unset(self, node: Name, scope: Scope, type_: str) -> Value:
         """A structure of which nothing sets a component, as the user answers it."""
