@@ -384,17 +384,17 @@ class Interpreter:
 
     def _declare(self, statement: Declaration, scope: Scope) -> None:
         known = scope.cells.get(statement.name)
-        fresh = self._data.cell(statement, scope.module)
-        if known is not None:
-            known.type = fresh.type
+        if known is not None:  # a parameter, or one that a loop comes by again
+            known.type = statement.type
             if isinstance(known.value, Unknown | Array | None):
                 return
             assert not isinstance(known.value, Pending)
             try:
-                known.value = convert(known.value, fresh.type, self._data.types)
+                known.value = convert(known.value, statement.type, self._data.types)
             except KrlTypeError as error:
-                raise SourceError(f"{fresh.name}: {error}", statement.span) from None
+                raise SourceError(f"{statement.text}: {error}", statement.span) from None
             return
+        fresh = self._data.cell(statement, scope.module)
         if statement.value is not None:
             value = self._evaluator.evaluate(statement.value, scope, statement.text)
             name = Name(statement.span, statement.name, statement.text)
