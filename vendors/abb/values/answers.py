@@ -62,6 +62,8 @@ def example_of(type_: Type | None, sizes: tuple[int, ...] = ()) -> Answer | None
         return None
     if type_.name == "orient":
         return 1.0, 0.0, 0.0, 0.0
+    if type_.name == "speeddata":
+        return 1000.0, 500.0, 5000.0, 1000.0
     if type_.name == "extjoint":
         return (9e9,) * len(type_.components)
     parts = [example_of(part) for part in type_.components.values()]
