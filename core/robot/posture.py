@@ -86,6 +86,21 @@ def posture(robot: Robot, q: ArrayLike, front: ArrayLike | None = None) -> Postu
     )
 
 
+def elbow_height(robot: Robot, q: ArrayLike) -> float | None:
+    """m by which axis 3 is above the line from axis 2 to the wrist, at a configuration (N,), seen
+    along these axes; None of an arm that is built otherwise."""
+    known = robot.recognised
+    if known is None or known.family is Family.SCARA:
+        return None
+    arm = known.geometry
+    _, q2, q3 = (float(value) for value in known.angles(np.asarray(q, dtype=float)[:6])[:3])
+    shoulder, elbow, wrist = (complex(x, z) for x, z in (arm.shoulder, arm.elbow, arm.wrist))
+    lower = (elbow - shoulder) * cmath.exp(-1j * q2)
+    line = lower + (wrist - elbow) * cmath.exp(-1j * (q2 + arm.signs[2] * q3))
+    share = (lower * line.conjugate()).real / abs(line) ** 2 if line else 0.0
+    return math.copysign(1.0, arm.frame[2, 2]) * (lower - share * line).imag
+
+
 def _mean_turn(lower: float, upper: float) -> complex:
     """What turns by all angles between two come to on average."""
     if lower == upper:

@@ -11,6 +11,7 @@ from ..arrays import FloatArray
 from ..errors import FlybyError
 from .kinematics.chain_kernels import jacobians, poses
 from .model import Robot
+from .posture import elbow_height
 
 _AHEAD = (0.45, 0.55, 0.35, 0.65)
 _ABOVE = (0.3, 0.1, 0.5, 0.0)
@@ -28,8 +29,8 @@ def ready_posture(robot: Robot) -> tuple[float, ...] | None:
     """A configuration (N,) far from singularities, external axes as near zero as can be.
 
     The flange is in front of the base and looks against the base's z axis. Of the solutions whose
-    Jacobian, lengths in units of the arm's, has a condition number of twice the least at most, the
-    one is taken with its joints nearest to zero, in whole degrees.
+    Jacobian, lengths in units of the arm's, has a condition number of twice the least at most, and
+    whose elbow is above, the one is taken with its joints nearest to zero, in whole degrees.
 
     Returns:
         None where the arm reaches none of the places that are tried.
@@ -63,6 +64,8 @@ def _best(
     scale = np.array([length] * 3 + [1.0] * 3)[:, None]
     conditions = np.linalg.cond(jacobians(robot.arm_chain, q) / scale)
     q = q[conditions <= _GOOD * conditions.min()]
+    above = [(elbow_height(robot, one) or 0.0) >= 0.0 for one in q]
+    q = q[above] if any(above) else q
     best = q[int(np.argmin(np.abs(q).sum(axis=1)))]
     whole = np.radians(np.round(np.degrees(best)))
     lower, upper = robot.limits.lower[: len(best)], robot.limits.upper[: len(best)]

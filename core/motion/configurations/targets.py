@@ -18,9 +18,13 @@ from ...robot.joint import JointKind
 from ...robot.kinematics.chain_kernels import poses
 from ...robot.kinematics.tracking import track
 from ...robot.model import Robot
+from ...robot.posture import elbow_height
+from ...robot.ready_posture import ready_posture
 from ...spatial.pose import Pose
 
 _SAME = 1e-9
+_STRETCHED = 1e-3
+"""m by which the elbow of an arm that is stretched out is off the line to its wrist."""
 _THIRD = 2
 """The third axis of a seven-axis arm moves linearly along moves of the TCP (as KUKA's E1 does)."""
 
@@ -58,13 +62,19 @@ class Targets:
         self._lower, self._upper = (one[: len(turns)] for one in (limits.lower, limits.upper))
 
     def rest(self) -> FloatArray:
-        """All axes at zero, or at the limit nearest to it."""
+        """Where the robot is near if nobody knows where it stands: all axes at zero, or at the
+        limit nearest to it; an arm that is stretched out there, in its ready posture."""
         return self._rest.copy()
 
     @cached_property
     def _rest(self) -> FloatArray:
         limits = self.robot.limits
-        return np.asarray(np.clip(np.zeros(self.robot.size), limits.lower, limits.upper))
+        zero = np.asarray(np.clip(np.zeros(self.robot.size), limits.lower, limits.upper))
+        height = elbow_height(self.robot, zero)
+        ready = (
+            ready_posture(self.robot) if height is not None and abs(height) < _STRETCHED else None
+        )
+        return zero if ready is None else np.array(ready)
 
     def joints(self, target: JointTarget, before: FloatArray) -> FloatArray:
         """The configuration of a joint target; axes that it does not name keep their values.

@@ -443,7 +443,7 @@ def _stands(robot: Robot, start: JointTarget) -> Note:
     ]
     return Note(
         "no start is known: the robot is taken to stand at the first target with its joints at "
-        f"{', '.join(shown)}, as it cannot drive the program from the solution nearest to zero",
+        f"{', '.join(shown)}, as it cannot drive the program from the solution tried first",
         0,
     )
 

@@ -258,7 +258,7 @@ def test_a_posture_beyond_a_range_is_the_programs_own_value(tmp_path) -> None:
 
 def test_another_start_is_tried_where_a_line_leaves_the_reach_of_the_first() -> None:
     """A wrist turned over takes room: from there the arm is too short for what it else drives."""
-    points = "p[0.06,-0.28,-0.14,0,3.14,0]", "p[-0.04,-0.39,-0.14,0,3.14,0]"
+    points = "p[0.14,0.04,-0.22,0,3.14,0]", "p[0.28,0.13,-0.22,0,3.14,0]"
     text = "\n".join(f"movel({point}, a=0.5, v=0.1)" for point in points)
     program = flyby.read(text, robot="ur/ur3e")
     controller = Controller(find_vendor("ur"), find_robot("ur/ur3e"))
@@ -266,5 +266,5 @@ def test_another_start_is_tried_where_a_line_leaves_the_reach_of_the_first() -> 
         controller._plan(program, None)
     assert refused.value.cause is FaultCause.REACH
     assert not drive(controller, program).faults
-    far = flyby.read(text.replace("-0.39", "-0.7"), robot="ur/ur3e")
+    far = flyby.read(text.replace("0.28", "0.9"), robot="ur/ur3e")
     assert controller.furthest_start(far) is None, "no start helps to reach it"

@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 
 import flyby
 from flyby.core.errors import FlybyError
+from flyby.core.motion.configurations.targets import Targets
 from flyby.core.registry import find_robot, installed
 from flyby.core.robot.kinematics.chain_kernels import jacobians
+from flyby.core.robot.posture import elbow_height
 from flyby.core.robot.ready_posture import ready_posture
 from flyby.testing.strategies import poses
 
@@ -93,3 +95,27 @@ ENDMODULE
     first = program.moves[0].target.pose.position
     np.testing.assert_allclose(first, stands - (0.06, 0, 0), atol=1e-6)
     assert flyby.emulate(program).faults == ()
+
+
+@pytest.mark.parametrize("name", ["ur/ur3e", "ur/ur5e", "ur/ur10e", "ur/ur20"])
+def test_an_arm_that_is_stretched_out_at_zero_begins_with_its_elbow_above(name: str) -> None:
+    """Its first pose says nothing of the posture: the one nearest to zero reaches up from below."""
+    robot = find_robot(name)
+    q = np.array(ready_posture(robot))
+    assert elbow_height(robot, q) > 0.05
+    _, place = robot.forward(q)
+    reach = float(np.hypot(*place[:2]))
+    for turn in np.radians((-120, -60, 0, 60, 120)):
+        at = f"{reach * np.cos(turn)}, {reach * np.sin(turn)}"
+        first, second = (f"p[{at}, {place[2] - down}, 0, 3.14159, 0]" for down in (0.0, 0.02))
+        text = f"movej({first})\nmovel({second})\n"
+        run = flyby.emulate(flyby.read(text, robot=name, vendor="ur"))
+        assert elbow_height(robot, run.parts[0].run.trajectory.q[0]) > 0.05
+
+
+@pytest.mark.parametrize("name", ["abb/irb2600-12-165", "kuka/kr16-2"])
+def test_arms_that_are_not_begin_near_zero(name: str) -> None:
+    robot = find_robot(name)
+    limits = robot.limits
+    zero = np.clip(np.zeros(robot.size), limits.lower, limits.upper)
+    np.testing.assert_array_equal(Targets(robot).rest(), zero)
