@@ -329,7 +329,7 @@ def answers_of(options: SourceOptions) -> Answers:
 
     given = options.answers
     answers = load_answers(given) if isinstance(given, str | Path) else given or Answers()
-    return replace(answers, cycles=options.cycles, goes_on=True, mends=True)
+    return replace(answers, cycles=options.cycles, closes=True, goes_on=True, mends=True)
 
 
 _BESIDE_PROGRAMS = frozenset({".sub", ".txt", ".urp", ".urpx"})

@@ -23,7 +23,7 @@ from ...tasks.results.causes import TimeCause, cause_row
 from ...tasks.results.lines import COLUMNS as LINE_COLUMNS
 from ...tasks.results.lines import LineReport, line_row
 from ...tasks.results.report import COLUMNS, MoveReport, Report, move_row, seconds
-from ...tasks.results.shares import shares
+from ...tasks.results.shares import CycleShares, shares
 from .console import complain_of_fault, print_rich, print_table, warn, warn_of
 
 if TYPE_CHECKING:
@@ -48,7 +48,10 @@ def print_report(run: Run) -> None:
         print_notes(report, program.questions)
         return
     print_table(COLUMNS, _rows(report))
+    spent = shares(program, report)
     told = f"cycle time {report.driven_time:.3f} s"
+    if spent.passes and round(spent.total - report.driven_time, 6):
+        told = f"{report.driven_time:.3f} s, the way to the loop and {_passes(spent)} of it"
     if report.faults:
         faults, parts = counted(report.faults, "fault"), counted(report.parts, "part")
         told = f"{faults}, so no cycle time; {report.driven_time:.3f} s driven in {parts}"
@@ -58,11 +61,14 @@ def print_report(run: Run) -> None:
     )
     for line in clearance_lines(report, program):
         print_rich(line)
-    spent = shares(program, report)
     if spent.total and (spent.passes or spent.devices):
         print_rich(str(spent))
     _print_losses(run)
     print_notes(report, program.questions)
+
+
+def _passes(spent: CycleShares) -> str:
+    return counted(spent.passes, "pass", "passes")
 
 
 def _print_losses(run: Run) -> None:

@@ -23,7 +23,9 @@ _SLACK = 1e-6
 
 def _zone_last(subject: ProgramSubject) -> Iterator[Hit]:
     moves = subject.program.moves
-    if moves and not isinstance(moves[-1].zone, Fine):
+    cycle = subject.program.cycle  # behind its end its beginning follows
+    goes_on = cycle is not None and cycle.end == len(moves)
+    if moves and not goes_on and not isinstance(moves[-1].zone, Fine):
         yield Hit(
             "the last move ends in a zone, but nothing follows: the robot stops at the point",
             "end the last move at a stop point (fine; no C_..; r=0)",

@@ -47,8 +47,10 @@ def _zone_cut(subject: RunSubject) -> Iterator[Hit]:
         if not isinstance(zone, Radius) or zone == ROOM or path.corners.kind[i] == STOP:
             continue
         reach = min(reaches[i])
-        # Where the tool merely turns, the zone's angle counts and no distance.
-        if _STILL < reach < zone.tcp * (1 - _CUT):
+        # Where the tool merely turns, the zone's angle counts and no distance. Of one that is made
+        # smaller for its speed a note says so: a smaller radius would be made smaller likewise.
+        made = i in path.corners.kept
+        if not made and _STILL < reach < zone.tcp * (1 - _CUT):
             yield Hit(
                 f"the zone of {1e3 * zone.tcp:.4g} mm reaches only {1e3 * reach:.4g} mm: it would "
                 "overlap its neighbours",

@@ -19,6 +19,7 @@ from ..program.arc_orientation import ArcOrientation
 from ..program.folding import Folding, usable, with_one_cycle
 from ..program.move import MoveC, MoveJ, MoveL, Statement
 from ..program.program import Program
+from ..program.question import QuestionKind
 from ..program.section import moved
 from ..program.target import JointTarget
 from ..program.zone import FINE, Radius, Zone
@@ -395,6 +396,13 @@ class _Translator:
             elif moves and section.endless and section.tested:
                 self.losses.statement(
                     section.span, f"{section.name}: becomes a loop without an end"
+                )
+        for asked in program.questions:
+            if asked.kind in (QuestionKind.BRANCH, QuestionKind.LOOP):
+                branch = asked.kind is QuestionKind.BRANCH
+                what = "the branch that is" if branch else "the passes that are"
+                self.losses.statement(
+                    asked.span, f"{what} driven alone can be written: it {asked.meanwhile}"
                 )
         for calls in folding.variants():
             name = calls[0].name

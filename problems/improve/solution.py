@@ -172,6 +172,13 @@ class Solution:
         return self.program is not self.original
 
     @property
+    def timed(self) -> str:
+        """What the times are of."""
+        cycle = self.original.cycle
+        passes = 1 if cycle is None else cycle.passes
+        return "cycle time" if passes == 1 else f"time of {passes} passes"
+
+    @property
     def proven(self) -> bool:
         """Whether the new program is proven to keep its clearance."""
         return self.certificate is not None and self.certificate.proven
@@ -184,7 +191,7 @@ class Solution:
         """
         before, after = self.before, self.after
         rows = [
-            FigureRow("cycle time", "s", before.time, after.time),
+            FigureRow(self.timed, "s", before.time, after.time),
             FigureRow("TCP path length", "m", before.path_length, after.path_length),
             FigureRow(
                 "peak TCP acceleration", "m/s²", before.peak_acceleration, after.peak_acceleration

@@ -255,7 +255,10 @@ def facts_of(run: Run) -> dict[str, str]:
         facts["driven"] = f"{report.driven_time:.3f} s"
         facts["faults"] = str(len(report.faults))
     else:
-        facts["cycle time"] = f"{report.driven_time:.3f} s"
+        assert report.cycle_time is not None
+        facts["cycle time"] = f"{report.cycle_time:.3f} s"
+        if round(report.cycle_time - report.driven_time, 6):
+            facts["with the way to its loop"] = f"{report.driven_time:.3f} s"
     if report.time_range is not None and report.time_range[0] != report.time_range[1]:
         least, most = report.time_range
         facts["with assumed figures"] = f"{least:.2f} to {most:.2f} s"

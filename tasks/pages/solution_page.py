@@ -103,9 +103,9 @@ def kind_of(made: Solution) -> str:
 def _facts(made: Solution) -> dict[str, str]:
     before, after = made.before.time, made.after.time
     if not made.changed:
-        return {"cycle time": f"{before:.3f} s", "change": "nothing better was found"}
+        return {made.timed: f"{before:.3f} s", "change": "nothing better was found"}
     facts = {
-        "cycle time": f"{before:.3f} → {after:.3f} s",
+        made.timed: f"{before:.3f} → {after:.3f} s",
         "change": f"{100 * (after / before - 1):+.1f} %",
     }
     if made.after.clearance is not None:

@@ -26,6 +26,7 @@ from ...core.program.zone import Fine, Radius, VendorZone
 from ...core.robot.model import Robot
 from ...core.source.reading import Reading
 from ..options.texts import fixed
+from .shares import shares
 
 if TYPE_CHECKING:
     from ...core.collision.clearance import Approach, MoveClearance
@@ -186,6 +187,8 @@ class Report:
         notes: what the user should know.
         to_cell: where arm, tool and what is carried come nearest to the cell; None without a cell.
         own: where the arm's links, the tool and what is carried come nearest to each other.
+        cycle_time: s of one cycle of the loop that production runs in, else of the whole program;
+            None where a move cannot be driven, as nobody knows what it would take.
     """
 
     program: str
@@ -205,6 +208,7 @@ class Report:
     notes: tuple[Note, ...]
     to_cell: Approach | None = None
     own: Approach | None = None
+    cycle_time: float | None = None
 
     def __repr__(self) -> str:
         told = [f"{1e3 * self.length:.1f} mm", counted(self.moves, "move")]
@@ -214,11 +218,6 @@ class Report:
             f"Report of {self.program} on {self.robot}: {self.driven_time:.3f} s, "
             f"{', '.join(told)}, {counted(self.notes, 'note')}"
         )
-
-    @property
-    def cycle_time(self) -> float | None:
-        """s; None where a move cannot be driven, as nobody knows what it would take."""
-        return None if self.faults else self.driven_time
 
     @property
     def moving(self) -> float:
@@ -261,7 +260,7 @@ def make_report(
         from ...core.collision.clearance import nearest_of
 
         to_cell, own = nearest_of(clearances)
-    return Report(
+    report = Report(
         program=driven.program.name,
         robot=robot.name,
         driven_time=driven.duration,
@@ -279,7 +278,11 @@ def make_report(
         notes=driven.notes,
         to_cell=to_cell,
         own=own,
+        cycle_time=None if driven.faults else driven.duration,
     )
+    if program.cycle is None or driven.faults:
+        return report
+    return replace(report, cycle_time=shares(program, report).total)
 
 
 def _rows(run: Run, robot: Robot) -> dict[int, MoveReport]:

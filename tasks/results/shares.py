@@ -2,13 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from ...core.display import counted
 from ...core.program.move import Opaque, Wait
 from ...core.program.program import Program
-from .report import Report
+
+
+class DrivenMove(Protocol):
+    """What is asked of a `MoveReport`."""
+
+    @property
+    def time(self) -> float:
+        """s of motion."""
+
+    @property
+    def settling(self) -> float:
+        """s behind it."""
+
+    @property
+    def fault(self) -> object:
+        """Why it cannot be driven; None if it can."""
+
+
+class Driven(Protocol):
+    """What is asked of a `Report`."""
+
+    @property
+    def moves(self) -> Sequence[DrivenMove]:
+        """One for each move of the program."""
+
+    @property
+    def parts(self) -> Sequence[tuple[int, int]]:
+        """First and last move of what is driven without a gap, from 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +78,12 @@ class CycleShares:
         which = "" if self.passes == self.length else f", the last of {self.passes}"
         if self.faults:
             which += f", but for {counted(self.faults, 'fault')}"
-        what = "one pass" if self.length == 1 else f"{self.length} passes, one cycle"
-        return f"{what} of the loop at line {self.line}{which}: {self.total:.3f} s; {told}"
+        what = "one pass" if self.length == 1 else f"{self.length} passes"
+        time = "no cycle time" if self.faults else f"cycle time {self.total:.3f} s"
+        return f"{time}, {what} of the loop at line {self.line}{which}: {told}"
 
 
-def standing(program: Program, report: Report) -> Iterator[tuple[Wait, int]]:
+def standing(program: Program, report: Driven) -> Iterator[tuple[Wait, int]]:
     """The waits that are driven, each with how many moves come before it.
 
     Behind a fault the robot waits only where it can stand.
@@ -68,7 +97,7 @@ def standing(program: Program, report: Report) -> Iterator[tuple[Wait, int]]:
             done += 1
 
 
-def shares(program: Program, report: Report) -> CycleShares:
+def shares(program: Program, report: Driven) -> CycleShares:
     """What the time of a run goes into."""
     cycle = program.cycle
     begin, end = (0, len(report.moves)) if cycle is None else (cycle.begin, cycle.end)

@@ -39,6 +39,11 @@ JUMP = {
     "abb": "again:\n{0}GOTO again;\n",
     "kuka": "AGAIN:\n{0}GOTO AGAIN\n",
 }
+UNTIL = {
+    "abb": "WHILE s<>99 DO\n{0}ENDWHILE\n",
+    "kuka": "WHILE s<>99\n{0}ENDWHILE\n",
+    "ur": "while s != 99:\n{0}end\n",
+}
 MOVE = {
     "abb": "MoveAbsJ [[{0},0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]],v500,fine,tool0;\n",
     "kuka": "PTP {{A1 {0},A2 -90,A3 90,A4 0,A5 30,A6 0}}\n",
@@ -68,6 +73,7 @@ def read(
     cycles: int = 1,
     before: str = "",
     loop: dict[str, str] = LOOP,
+    closes: bool = False,
 ) -> Program:
     body = before + loop[language].format(SET[language].format("n", 0) + body)
     other = other or SET[language].format("n", "n")
@@ -75,7 +81,7 @@ def read(
         FRAME[language].format(first=first, loop=body, other=other),
         FILE[language],
         robot=find_robot(ROBOTS[language]),
-        answers=Answers(goes_on=True, cycles=cycles),
+        answers=Answers(goes_on=True, cycles=cycles, closes=closes),
     )
 
 
@@ -238,3 +244,33 @@ def test_a_cycle_that_begins_elsewhere_than_the_next_is_said(language, data) -> 
     program = read(language, body, before=start)
     assert bool(closing(program)) == (before != ways[-1])
     assert not closing(read(language, body, before=start, cycles=2))
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+@given(data=st.data())
+def test_a_cycle_is_closed_by_one_pass_more(language, data) -> None:
+    """However the robot came to the loop, the last cycle begins where it ends."""
+    count = data.draw(st.integers(1, 4))
+    before = data.draw(st.integers(0, count))
+    body = "".join(
+        step(language, k, (k + 1) % count, MOVE[language].format(k + 1)) for k in range(count)
+    )
+    start = MOVE[language].format(before) if before else ""
+    program = read(language, body, before=start, closes=True)
+    cycle, driven = program.cycle, [0, *places(program)]
+    assert cycle is not None and cycle.length == count
+    assert driven[cycle.begin] == driven[cycle.end] and not closing(program)
+    ways = places(program)[cycle.begin : cycle.end]
+    assert sorted(ways) == [*range(1, count + 1)]
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_a_state_that_never_ends_its_loop_comes_round(language) -> None:
+    states = (0, 1), (1, 2), (2, 0)
+    body = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in states)
+    program = read(language, body, loop=UNTIL)
+    assert places(program) == [1, 2, 3]
+    assert program.cycle is not None and program.cycle.length == 3
+    ends = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in ((0, 1), (1, 99)))
+    program = read(language, ends, loop=UNTIL)
+    assert places(program) == [1, 2] and program.cycle is None

@@ -42,6 +42,8 @@ class Answers:
             is stepped over, a move whose target is not known is `open`. Else both are refused.
         mends: whether what is no statement of the language is stepped over. Else it is refused.
         cycles: passes of a loop without an end that moves the robot.
+        closes: whether one more is read where the first cycle begins elsewhere than later ones:
+            how the robot comes from the end of a cycle to its beginning is known then.
         signals: what signals are called on other robots; a reader does not ask for them.
         cut: why loops are left before their end, as they go on for more moves than are read; empty
             of a loop that has none, in which the program ends.
@@ -59,6 +61,7 @@ class Answers:
     goes_on: bool = False
     mends: bool = False
     cycles: int = 1
+    closes: bool = False
     signals: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     streams: Mapping[str, Stream] = field(default_factory=dict)
     cut: Mapping[str, str] = field(default_factory=dict)

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NoReturn, Protocol
 
+from ....core.source.execution.transcript import Transcript
 from ..syntax.tree import Block, Keyword, Routine, Statement
 from ..values.errors import LONG_JUMP, NUMBERS, TOO_MANY_RETRIES, ProgramError
 from ..values.evaluator import Evaluator
@@ -50,6 +51,7 @@ class Recovering(Protocol):
     """What handlers need of a run."""
 
     evaluator: Evaluator
+    out: Transcript
 
     def run_block(self, block: Block, scope: Scope) -> None:
         """Execute statements in order."""
@@ -93,6 +95,11 @@ def recover(run: Recovering, frame: Frame, statement: Statement, error: ProgramE
     finally:
         frame.error = None
         run.set_error(0.0)
+    run.out.notes.count(
+        f"{_bare(error)}: the ERROR handler of {frame.routine.text} ends without RETRY or TRYNEXT, "
+        "and the routine is left here",
+        statement.span,
+    )
     run.leave()
 
 

@@ -194,6 +194,7 @@ class Endings(Generic[Block]):
                 driven = passes.count
                 if answer is None and moved and loop.endless:
                     driven = max(driven, host.course.answers.cycles)
+                    driven += self._is_open(passes) and driven == passes.count
                 passes.most = host.course.passes(loop.span, skip.reason, True, driven, leaves=True)
                 self._suppose(passes, skip.reason)
             if passes.count < passes.most:
@@ -205,6 +206,9 @@ class Endings(Generic[Block]):
                 loop.ended()
             return True
         if gets_on:
+            if answer is None and moved and self._recurs(passes):
+                self._endless(passes, moving, answer)
+                return False
             if answer is None:
                 self._look_ahead(passes)
             return self._passed(passes, answer) or self._too_long(passes)
@@ -399,11 +403,31 @@ class Endings(Generic[Block]):
             return
         if answer is None and cycles == 1 and self._states.are_under_way(passes):
             return
+        if answer is None and self._is_open(passes):
+            return
         self._states.tell_cycle(passes)
         words = f"({passes.loop.words})"
         if moving and not self._has_moved(passes):
             words = f"{words} that {_UNMOVED}"
         self._end(passes, words)
+
+    def _recurs(self, passes: Passes[Block]) -> bool:
+        """Whether a loop goes on for ever though it has a condition: all that its passes, and its
+        end, depend on is as it was before one of them."""
+        host = self._host
+        alone = not host.course.answers.sequences and not host.outputs.asked_since(passes.mark)
+        return alone and self._states.come_round(passes)
+
+    def _is_open(self, passes: Passes[Block]) -> bool:
+        """Whether another pass is read to know how the robot comes to the beginning of a cycle."""
+        answers = self._host.course.answers
+        return (
+            answers.closes
+            and answers.cycles == 1
+            and self._has_moved(passes)
+            and passes.count < FOLLOWED
+            and not self._states.closes(passes)
+        )
 
     def _end(self, passes: Passes[Block], words: str) -> NoReturn:
         """End the program in a loop that nothing ends."""

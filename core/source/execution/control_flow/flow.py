@@ -25,7 +25,10 @@ after a pass than before. If it does not get on, the first of these is so:
   what its condition reads has values afterwards that end it, as after a wait.
 - It is endless. One pass is read (`Answers.cycles`), and the program ends there. Of one that is
   driven by a state, which a pass sets and the next one asks for, all are read until the state comes
-  back: they are the cycle.
+  back: they are the cycle. Where the first cycle begins elsewhere than later ones one pass more is
+  read (`Answers.closes`).
+- All that its end and the ways of its passes depend on is as it was before one of them, though it
+  has a condition: it is endless, too.
 
 *What is set on a way that nobody has decided* is supposed from there on, in that branch's block and
 in those that were not taken, and in a loop of which it is not known how often it runs. So is what

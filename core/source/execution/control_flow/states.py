@@ -12,7 +12,7 @@ from ....door import given, spelt
 from ....program.cycle import Cycle
 from ..host import Host
 from .analysis import Analysis
-from .loops import Loop, Passes
+from .loops import Head, Loop, Passes, Start
 from .steps import NOTHING, Block
 
 FOLLOWED = 100
@@ -68,25 +68,32 @@ class LoopStates(Generic[Block]):
         at_once = last.driven == passes.start.driven and meter.driven >= every
         return last.driven < meter.driven and not at_once
 
-    def tell_cycle(self, passes: Passes[Block]) -> None:
-        """What a cycle of a loop is that production runs in: the passes since the state was what it
+    def _cycle(self, passes: Passes[Block]) -> tuple[Head | Start, int]:
+        """Where the last cycle began, and how many passes it has: those since the state was what it
         is, or the last one."""
-        host, loop, count = self._host, passes.loop, len(passes.heads)
-        first = passes.last_round()
+        count, first = len(passes.heads), passes.last_round()
         last = max(count - 1, 0) if first is None else first
-        begun = passes.heads[last] if passes.heads else passes.start
-        if host.meter.moves > begun.moves:
-            length = max(count - last, 1)
-            end = host.meter.moves
-            host.course.cycle = Cycle(begun.moves, end, passes.count, loop.span, length)
-            if begun.moves == passes.start.moves and begun.place != host.place:
-                self._say_place(passes, length, begun.place is None)
+        return passes.heads[last] if passes.heads else passes.start, max(count - last, 1)
 
-    def _say_place(self, passes: Passes[Block], length: int, unknown: bool) -> None:
+    def closes(self, passes: Passes[Block]) -> bool:
+        """Whether the last cycle began where later ones do: in one before it, or at its own end."""
+        begun, _ = self._cycle(passes)
+        return begun.moves > passes.start.moves or begun.place == self._host.place
+
+    def tell_cycle(self, passes: Passes[Block]) -> None:
+        """What a cycle of a loop is that production runs in."""
+        host, (begun, length) = self._host, self._cycle(passes)
+        end = host.meter.moves
+        if end > begun.moves:
+            host.course.cycle = Cycle(begun.moves, end, passes.count, passes.loop.span, length)
+            if not self.closes(passes):
+                self._say_place(passes, begun.place is None)
+
+    def _say_place(self, passes: Passes[Block], unknown: bool) -> None:
         """Say that the cycle that was read does not begin where later ones do."""
         span = passes.loop.span
         where = "where nobody knows" if unknown else "where the robot stood before the loop"
-        more = given("cycles", str(passes.count + length))
+        more = given("cycles", str(passes.count + 1))
         self._host.note_once(
             f"closes {span.file}:{span.start}",
             f"the first cycle of the loop ({passes.loop.words}) begins {where}, and the next one "
