@@ -12,7 +12,6 @@ import typer
 
 from ..core.display import counted
 from ..core.errors import EntryError, FaultCause, FlybyError, InputError, OptionError
-from ..core.motion.path.no_move import no_move, not_met
 from ..core.program.entry_point import ALL, others_drive
 from ..core.source.write.options import OpaqueStyle
 from ..tasks.ask import ask_with, next_command
@@ -168,6 +167,8 @@ def _begun(program: Path, source: SourceOptions, *, each: bool) -> Program | _No
         return read
     if others_drive(read.entries):
         return _Nowhere(f"{program}: {read.name} drives nothing as it begins")
+    from ..core.motion.path.no_move import no_move, not_met  # late: programs take time
+
     others = [entry.name for entry in not_met(read) if entry.moves]
     return _Nowhere(_CHOOSE.split(str(no_move(read)))[0], tuple(others)) if others else read
 

@@ -83,11 +83,23 @@ def translate_with(program: Program, options: TranslateOptions) -> Translation:
     keep = not options.flat and spoken is not None and spoken.structure
     if keep:
         program = _with_second_cycle(program)
+    else:
+        program = _with_first_cycle(program)
     options.say(f"translating {counted(program.moves, 'move')}")
     return carried(program, before, after, options.base, keep)
 
 
 translate = by_keywords(translate_with, TranslateOptions)
+
+
+def _with_first_cycle(program: Program) -> Program:
+    """A program without the pass that was read to know how a cycle begins."""
+    from ..core.program.folding import with_one_cycle
+    from ..core.source.reading import Reading
+
+    reading = program.reading
+    asked = isinstance(reading, Reading) and reading.options.answers.cycles > 1
+    return program if asked else with_one_cycle(program)
 
 
 def _with_second_cycle(program: Program) -> Program:

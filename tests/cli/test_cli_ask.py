@@ -77,7 +77,10 @@ def test_a_cycle_with_a_fault_has_no_time(flyby: Flyby, tmp_path: Path) -> None:
         "    movej([0.2, -1.57, 1.57, -1.57, -1.57, 0])\n  end\nend\n"
     )
     words = ("emulate", path, *ROBOT)
-    assert "one pass of the loop at line 3, but for 1 fault: " in flyby(*words).stdout
+    assert (
+        "no cycle time, one pass of the loop at line 3, the last of 2, but for 1 fault: "
+        in flyby(*words).stdout
+    )
     report = json.loads(flyby(*words, "--json").stdout)
     assert report["cycle_time_s"] is report["cycle"]["total_s"] is None
     assert report["cycle"]["motion_s"] > 0.0

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 from ...door import spelt
 from ...errors import FaultCause, MotionError, Span
-from ...program.assumed_places import FROM_THE_START
 from ...program.entry_point import EntryPoint, listed
 from ...program.program import Program
 from ...program.question import QuestionKind
@@ -82,6 +81,8 @@ def goes_nowhere(program: Program, start: JointTarget | None) -> MotionError:
     Args:
         start: where it is said to stand first; None if nobody says.
     """
+    from ...program.assumed_places import FROM_THE_START  # late: poses take time
+
     ways = _open_ways(program)
     supposed = {move.supposed for move in program.moves if not move.open}
     # A text that says no start, or asks for it, has been read from another one already.

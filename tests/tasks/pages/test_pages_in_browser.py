@@ -416,7 +416,7 @@ def test_points_of_a_front_are_picked(opened: Opened) -> None:
 def test_findings_lead_to_their_lines(opened: Opened) -> None:
     program = flyby.read(ROOT / "examples/pick.script", cell=ROOT / "examples/cell/pick.toml")
     view = opened(page_bytes(flyby.check(program), program=program))
-    view.locator("tbody tr.warning").first.click()
+    view.locator("tbody tr", has_text="between bottle 1 and bottle 2").first.click()
     assert view.locator(".line.picked").get_attribute("data-line") == "18"
     assert view.evaluate("flyby.session.t") > 0.0
 
