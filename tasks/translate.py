@@ -81,10 +81,7 @@ def translate_with(program: Program, options: TranslateOptions) -> Translation:
     controller_of(program, before)  # refuses faults
     spoken = after.vendor.speaks
     keep = not options.flat and spoken is not None and spoken.structure
-    if keep:
-        program = _with_second_cycle(program)
-    else:
-        program = _with_first_cycle(program)
+    program = _with_second_cycle(program) if keep else _with_first_cycle(program)
     options.say(f"translating {counted(program.moves, 'move')}")
     return carried(program, before, after, options.base, keep)
 
