@@ -274,3 +274,34 @@ def test_a_state_that_never_ends_its_loop_comes_round(language) -> None:
     ends = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in ((0, 1), (1, 99)))
     program = read(language, ends, loop=UNTIL)
     assert places(program) == [1, 2] and program.cycle is None
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_a_state_that_a_counter_turns_has_the_counter_in_it(language) -> None:
+    equal, plus = EQUAL[language], SET[language].format("n", "n+1")
+    turn = SET[language].format("s", "1-s") + SET[language].format("n", 0)
+    body = IF[language].format(f"s{equal}0", MOVE[language].format(1))
+    body += IF[language].format(f"s{equal}1", MOVE[language].format(2))
+    body += plus + IF[language].format(f"n{equal}3", turn)
+    before = SET[language].format("n", 0)
+    text = before + LOOP[language].format(body)
+    other = SET[language].format("n", "n")
+    program = find_vendor(language).read(
+        FRAME[language].format(first=0, loop=text, other=other),
+        FILE[language],
+        robot=find_robot(ROBOTS[language]),
+        answers=Answers(goes_on=True, cycles=9),
+    )
+    assert places(program) == [1, 1, 1, 2, 2, 2, 1, 1, 1]
+    assert program.cycle is not None and program.cycle.length == 6
+
+
+@pytest.mark.parametrize("language", ROBOTS)
+def test_an_open_way_out_is_taken_when_the_state_has_come_back(language) -> None:
+    leave = {"abb": "EXIT;\n", "kuka": "HALT\n", "ur": "halt\n"}[language]
+    signal = {"abb": "di1=1", "kuka": "$IN[1]", "ur": "get_standard_digital_in(1)"}[language]
+    states = (0, 1), (1, 0)
+    body = "".join(step(language, a, b, MOVE[language].format(a + 1)) for a, b in states)
+    program = read(language, body + IF[language].format(signal, leave))
+    assert places(program)[:2] == [1, 2]
+    assert program.cycle is not None and program.cycle.length == 2

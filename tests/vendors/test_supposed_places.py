@@ -51,6 +51,8 @@ CONST robtarget two{{{{2}}}}:=[p0,[[900,50,900],[0,0,1,0],[0,0,0,0],[{EXTERNAL}]
 VAR robtarget p;
 VAR pose d:=[[0,0,0],[1,0,0,0]];
 VAR num n;
+VAR num i;
+VAR num k;
 PROC main()
 MoveJ p0,v500,fine,tool0;
 {{line}}
@@ -63,6 +65,19 @@ MoveL q,v500,fine,tool0;
 ENDPROC
 PROC set(num k)
 n:=k;
+ENDPROC
+PROC shadow(num i)
+VAR num k;
+k:=i;
+i:=i+1;
+ENDPROC
+PROC seek()
+n:=0;
+WHILE {{n}}>n DO
+n:=n+1;
+IF n>5 RETURN;
+ENDWHILE
+n:=50;
 ENDPROC
 PROC early()
 IF {{n}}>3 RETURN;
@@ -114,6 +129,10 @@ ENDMODULE
             "early;\nMoveL Offs(CRobT(),0,0,20),v500,fine,tool0;",
             "IF {n}>3 MoveL two{{2}},v500,fine,tool0;\np:=CRobT();\nMoveL p,v500,fine,tool0;",
             "n:=0;\nIF {n}>3 GOTO on;\nn:=10;\non:\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
+            "n:=0;\nIF {n}>3 GOTO far;\nnear:\nn:=10;\nfar:\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
+            "seek;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
+            "FOR i FROM 1 TO 2 DO\nn:=0;\nIF i=2 THEN\nIF {n}>3 GOTO on;\nENDIF\nn:=10;\non:\n"
+            "ENDFOR\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
             "n:=0;\nWHILE n<5 DO\nn:=n+1;\nIF {n}>3 GOTO out;\nENDWHILE\nout:\n"
             "MoveL Offs(p0,0,n,0),v500,fine,tool0;",
         ),
@@ -126,6 +145,7 @@ ENDMODULE
             "IF {n}>3 MoveL two{{2}},v500,fine,tool0;\nMoveJ p0,v500,fine,tool0;\n"
             "MoveL Offs(CRobT(),0,0,20),v500,fine,tool0;",
             "early;\nn:=0;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;",
+            "i:=10;\nk:=5;\nIF {n}>3 shadow 1;\nMoveL Offs(p0,k,i,0),v500,fine,tool0;",
             "n:=0;\nIF {n}>3 GOTO on;\nn:=10;\nMoveL Offs(p0,0,n,0),v500,fine,tool0;\non:",
             "again:\nn:=0;\nIF {n}>3 GOTO again;\nn:=10;\nlater:\n"
             "MoveL Offs(p0,0,n,0),v500,fine,tool0;",
@@ -159,6 +179,16 @@ END
 DEF put(k:OUT)
 INT k
 k=2
+END
+DEF perhaps(k:OUT)
+INT k
+IF {n}>3 THEN
+k=2
+ENDIF
+END
+DEF shadow()
+DECL INT i
+i=2
 END
 DEF early(k:OUT)
 INT k
@@ -203,6 +233,7 @@ ENDFCT
             "FOR i=1 TO {n}\nWAIT SEC 0\nENDFOR\nPTP p[i]",
             "i=1\nWHILE {n}>3\ni=i+1\nENDWHILE\nPTP p[i]",
             "early(i)\nPTP p[i]",
+            "i=1\nperhaps(i)\nPTP p[i]",
             "IF {n}>3 THEN\nPTP p[2]\nENDIF\nLIN_REL {{Z 20}}",
             "IF {n}>3 THEN\nPTP p[2]\nENDIF\nPTP {{Z 920}}",
             "early(i)\nPTP {{A6 20}}",
@@ -215,6 +246,7 @@ ENDFCT
             "IF {n}>3 THEN\n$BASE.X=20\nENDIF\n$BASE={{X 0,Y 0,Z 0,A 0,B 0,C 0}}\nPTP p[2]",
             "IF {n}>3 THEN\ni=2\nENDIF\nFOR n=1 TO i\nWAIT SEC 0\nENDFOR\ngo(p[1])",
             "early(i)\ni=1\nPTP p[i]",
+            "i=1\nIF {n}>3 THEN\nshadow()\nENDIF\nPTP p[i]",
             "IF {n}>3 THEN\nPTP p[2]\nENDIF\nPTP p[1]\nLIN_REL {{Z 20}}",
             "i=1\nIF {n}>3 THEN\nGOTO ON\nENDIF\ni=2\nPTP p[i]\nON:",
         ),
@@ -283,6 +315,8 @@ end
             "if {n} > 3:\n    movel(two[1])\n  end\n"
             "  movel(pose_add(get_target_tcp_pose(), p[0,0,0.01,0,0,0]))",
             "early()\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
+            "h = 0\n  k = 0\n  while k < 2:\n    k = k + 1\n    if {n} > 3:\n      continue\n"
+            "    end\n    h = 0.01\n  end\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
             "k = 0\n  while {n} > k:\n    k = k + 0.01\n  end\n"
             "  movel(pose_add(two[0], p[0,0,k,0,0,0]))",
             "k = 0\n  while k < 0.05:\n    k = k + 0.01\n    if {n} > 3:\n      break\n    end\n"
@@ -295,6 +329,8 @@ end
             "if {n} > 3:\n    h = 0.1\n  end\n  go(two[0])",
             "if {n} > 3:\n    movel(two[1])\n  end\n  movel(two[0])\n"
             "  movel(pose_add(get_target_tcp_pose(), p[0,0,0.01,0,0,0]))",
+            "k = 0\n  while k < 2:\n    k = k + 1\n    if {n} > 3:\n      continue\n    end\n"
+            "    sleep(0.1)\n  end\n  movel(pose_add(two[0], p[0,0,0.01*k,0,0,0]))",
             "early()\n  h = 0\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
         ),
     ),

@@ -66,7 +66,7 @@ class Course:
         sections: which routines and loops have left which statements.
         supposed: what the data depend on that were read since the statement began and have the
             values of a way that was chosen by rule; empty if on nothing.
-        guard: the way out that was not taken, as nobody decides it; None if there is none.
+        guards: the ways out that were not taken, as nobody decides them.
     """
 
     answers: Answers = field(default_factory=Answers)
@@ -74,7 +74,7 @@ class Course:
     cycle: Cycle | None = None
     sections: Sections = field(default_factory=Sections)
     supposed: str = ""
-    guard: Guard | None = None
+    guards: list[Guard] = field(default_factory=list)
     _asked: set[tuple[str, str]] = field(default_factory=set)
     _turns: dict[str, int] = field(default_factory=dict)
     _decided: dict[tuple[str, int, str], tuple[Note, int]] = field(default_factory=dict)
@@ -89,8 +89,8 @@ class Course:
     def sets(self, datum: Supposable, whole: bool = True) -> None:
         """A datum, or a part of it, is given what the statement under way reads."""
         datum.supposed = (not whole and datum.supposed) or self.supposed
-        if self.guard is not None:
-            self.guard.written.append(datum)
+        for guard in self.guards:
+            guard.written.append(datum)
 
     @contextmanager
     def apart(self) -> Iterator[None]:

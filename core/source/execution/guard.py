@@ -27,9 +27,8 @@ class Guard:
     Args:
         reason: what it depends on.
         routine: in which it stands, by its number.
-        to_label: whether the ways come together at a label, and not at the routine's end.
+        label: where the ways come together; None for the routine's end.
         place: where the robot stood.
-        outer: that which is open round it.
 
     Attributes:
         written: data that were set since.
@@ -37,15 +36,11 @@ class Guard:
 
     reason: str
     routine: int
-    to_label: bool
+    label: str | None
     place: object
-    outer: Guard | None
     written: list[Supposable] = field(default_factory=list)
 
-    def close(self) -> Guard | None:
-        """The ways have come together; which guard is open now."""
+    def close(self) -> None:
+        """The ways have come together."""
         for datum in self.written:
             datum.supposed = datum.supposed or self.reason
-        if self.outer is not None:
-            self.outer.written += self.written
-        return self.outer

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 from ...errors import SourceError, Span
+from .control_flow.steps import NOTHING
 from .course import Course
 from .limits import Meter
 from .outputs import Outputs
@@ -80,15 +81,22 @@ class Host(Protocol):
         """
         ...
 
-    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+    def leave_supposed(
+        self,
+        names: frozenset[str],
+        settings: frozenset[str],
+        reason: str,
+        called: frozenset[str] = NOTHING,
+    ) -> None:
         """Data and settings have values of a way that was chosen by rule: nothing is proven of
         what reads them, until they are set anew.
 
         Args:
-            names: of data, found from where the program stands, or in what was called from there;
-                `steps.PLACE` for where the robot stands.
+            names: of data, found from where the program stands; `steps.PLACE` for where the robot
+                stands.
             settings: by the names of `Step.sets`.
             reason: what they depend on.
+            called: names of data that routines write which were called: of the whole program's.
         """
         ...
 

@@ -48,6 +48,10 @@ class Statements:
         """See `core.source.execution.control_flow.steps.Tree`."""
         return [self._step(statement) for statement in block.statements]
 
+    def own(self, block: Body) -> frozenset[str]:
+        """None: registers are everybody's."""
+        return NOTHING
+
     def reads(self, expressions: Sequence[Expression]) -> frozenset[str]:
         """Names of the registers and signals that expressions read."""
         found = (self._names(d, self._all) for e in expressions for d in data_in(e))

@@ -199,11 +199,17 @@ class _Interpreter:
         """None: what registers hold that others write is not known anyhow."""
         return []
 
-    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+    def leave_supposed(
+        self,
+        names: frozenset[str],
+        settings: frozenset[str],
+        reason: str,
+        called: frozenset[str] = NOTHING,
+    ) -> None:
         """See `core.source.execution.host.Host`."""
         if PLACE in names:
             self._stands_by = reason
-        self._values.leave_supposed(names, reason)
+        self._values.leave_supposed(names | called, reason)
 
     def open_move(self, error: SourceError, span: Span) -> bool:
         """See `core.source.execution.host.Host`."""

@@ -58,6 +58,14 @@ class RapidTree:
         """The routine of a body."""
         return self._routines[id(body)]
 
+    def own(self, block: tree.Block) -> frozenset[str]:
+        """See `core.source.execution.control_flow.steps.Tree.own`."""
+        routine = self._routines.get(id(block))
+        if routine is None:
+            return NOTHING
+        given = {one.name for one in routine.parameters}
+        return frozenset(given.union(one.name for one in routine.declarations))
+
     def called(self, expression: tree.Expression, home: Home) -> Iterator[tree.Block]:
         """Bodies of the program's own functions that an expression calls."""
         for call in calls_in(expression):

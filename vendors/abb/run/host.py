@@ -10,7 +10,7 @@ from weakref import proxy
 
 from ....core.errors import Note, SourceError, Span
 from ....core.program.move import Move
-from ....core.source.execution.control_flow.steps import PLACE
+from ....core.source.execution.control_flow.steps import NOTHING, PLACE
 from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
@@ -123,12 +123,19 @@ class RapidHost(ABC):
             *(n for n, c in found if c is None and self.evaluator.forget_elsewhere(n)),
         ]
 
-    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+    def leave_supposed(
+        self,
+        names: frozenset[str],
+        settings: frozenset[str],
+        reason: str,
+        called: frozenset[str] = NOTHING,
+    ) -> None:
         """See `core.source.execution.host.Host`."""
         if PLACE in names:
             self.position.suppose(reason)
-        scopes = [*self._frames[-1].scope.outwards(), *self.data.scopes()]
-        for cell in [s.cells[n] for s in scopes for n in names if n in s.cells]:
+        cells = [*filter(None, map(self._frames[-1].scope.find, sorted(names)))]
+        cells += [s.cells[n] for s in self.data.scopes() for n in sorted(called) if n in s.cells]
+        for cell in cells:
             if not cell.constant:
                 cell.supposed = cell.supposed or reason
         self.settings.supposed |= dict.fromkeys(settings - self.settings.supposed.keys(), reason)

@@ -62,6 +62,15 @@ class KrlTree:
         routine = self._routines.get(id(body))
         return None if routine is None else (routine, self._homes[id(body)])
 
+    def own(self, block: tree.Block) -> frozenset[str]:
+        """See `core.source.execution.control_flow.steps.Tree.own`."""
+        routine = self._routines.get(id(block))
+        if routine is None:
+            return NOTHING
+        given = {one.name for one in routine.parameters}
+        declared = (one for one in block.statements if isinstance(one, tree.Declaration))
+        return frozenset(given.union(one.name for one in declared))
+
     def outputs(self, target: tree.Name, home: Module) -> frozenset[str] | None:
         """The outputs that a name stands for; None if only the run knows which."""
         constant = all(self._is_constant(index, home) for index in indices_in(target))

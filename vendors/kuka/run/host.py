@@ -7,7 +7,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 from ....core.errors import SourceError, Span
-from ....core.source.execution.control_flow.steps import PLACE
+from ....core.source.execution.control_flow.steps import NOTHING, PLACE
 from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
 from ....core.source.execution.outputs import Outputs
@@ -106,11 +106,19 @@ class KrlHost:
                 left += parts
         return left
 
-    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+    def leave_supposed(
+        self,
+        names: frozenset[str],
+        settings: frozenset[str],
+        reason: str,
+        called: frozenset[str] = NOTHING,
+    ) -> None:
         """See `core.source.execution.host.Host`."""
         if PLACE in names:
             self._position.suppose(reason)
-        for cell in self._data.named(names | settings, self._scopes[-1:]):
+        scope = self._scopes[-1]
+        own = (self._data.find(name, scope) for name in sorted(names))
+        for cell in (*filter(None, own), *self._data.named(called | settings, ())):
             if not cell.constant:
                 cell.supposed = cell.supposed or reason
         self._system_changed()

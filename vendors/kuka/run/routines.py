@@ -126,3 +126,7 @@ class Routines:
                 with self._evaluator.course.apart():
                     self._evaluator.course.suppose(cell.supposed)
                     self._evaluator.assign(datum, value, caller, call.span, path)
+            elif cell.supposed:  # on the other way it may have been written
+                given = self._data.find(datum.name, caller)
+                if given is not None:
+                    given.supposed = given.supposed or cell.supposed

@@ -71,6 +71,11 @@ class ScriptTree:
         names = frozenset(names_in(expression)) | read_by(calls_written(expression))
         return names if KINEMATICS.keys().isdisjoint(_called(expression)) else names | {PLACE}
 
+    def own(self, block: tree.Block) -> frozenset[str]:
+        """See `core.source.execution.control_flow.steps.Tree.own`."""
+        defines = (one for ones in self._functions.values() for one in ones if one.body is block)
+        return frozenset(parameter.name for one in defines for parameter in one.parameters)
+
     def steps(self, block: tree.Block) -> Sequence[Step[tree.Block]]:
         """See `core.source.execution.control_flow.steps.Tree.steps`."""
         return [self._step(s) for s in block if not isinstance(s, tree.Define)]

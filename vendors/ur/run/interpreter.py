@@ -18,6 +18,7 @@ from ....core.program.move import Move
 from ....core.program.move import Statement as ProgramStatement
 from ....core.source.execution.control_flow.analysis import Analysis
 from ....core.source.execution.control_flow.flow import Flow
+from ....core.source.execution.control_flow.steps import NOTHING as NO_NAMES
 from ....core.source.execution.control_flow.steps import PLACE
 from ....core.source.execution.course import Course
 from ....core.source.execution.limits import Meter
@@ -159,12 +160,19 @@ class Interpreter:
         """See `core.source.execution.host.Host`: a script's data are written by nobody else."""
         return []
 
-    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
+    def leave_supposed(
+        self,
+        names: frozenset[str],
+        settings: frozenset[str],
+        reason: str,
+        called: frozenset[str] = NO_NAMES,
+    ) -> None:
         """See `core.source.execution.host.Host`."""
         if PLACE in names:
             self.position.suppose(reason)
         scope = self.frames[-1].scope if self.frames else self.root
-        for cell in filter(None, map(scope.find, sorted(names))):
+        own = map(scope.find, sorted(names))
+        for cell in filter(None, (*own, *map(self.root.find, sorted(called)))):
             cell.supposed = cell.supposed or reason
         if "set_tcp" in settings and not self.settings.supposed:
             self.settings = replace(self.settings, supposed=reason)

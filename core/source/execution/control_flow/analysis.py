@@ -143,13 +143,14 @@ class Analysis(Generic[Block]):
         return self._once("settings", block, NOTHING, find)
 
     def written_apart(self, body: Block) -> list[tuple[Block, frozenset[str]]]:
-        """Names of the data that a routine's body may write, and apart from it those that each
-        routine does which is called from there."""
+        """Names of the data that a block may write, and apart from it those that each routine does
+        which is called from there, but for what it keeps to itself."""
         found: list[tuple[Block, frozenset[str]]] = []
         todo, reached = [body], {id(body)}
         for one in todo:
             steps = [*self._all(one)]
-            found.append((one, NOTHING.union(*(step.writes for step in steps))))
+            own = NOTHING if one is body else self._tree.own(one)
+            found.append((one, NOTHING.union(*(step.writes for step in steps)) - own))
             for called in (called for step in steps for called in step.calls):
                 if id(called) not in reached:
                     reached.add(id(called))
@@ -222,7 +223,7 @@ class Analysis(Generic[Block]):
                     asked = (self._reached(body, _NONE_LEFT_OUT) for body in step.calls)
                     own = (one.reads | one.made_of for steps in asked for one in steps)
                     names = names.union(step.reads, *own)
-            return _made_of(names, inside)
+            return _made_of(names, [(step, NOTHING) for step in inside])
 
         return self._once("guards", block, NOTHING, find)
 
@@ -235,7 +236,7 @@ class Analysis(Generic[Block]):
             reached = [*self._reached(block, _NONE_LEFT_OUT)]
             steps = (s for s in reached if not s.loop and any(map(self.moves, s.inner)))
             names = NOTHING.union(*(step.reads for step in steps))
-            return _made_of(names, reached) - self.set_first(block)
+            return _made_of(names, self._with_all_conditions(block)) - self.set_first(block)
 
         return self._once("choosing", block, NOTHING, find)
 
@@ -341,6 +342,14 @@ class Analysis(Generic[Block]):
         within = (Exit.PASS, Exit.LOOP) if step.loop else (Exit.PASS,)
         return any(how not in within for how, _ in ways)
 
+    def _with_all_conditions(self, block: Block) -> list[tuple[Step[Block], frozenset[str]]]:
+        """The statements of a block and of all that it calls, each with what the conditions read
+        that it runs on in its own routine."""
+        bodies = [body for body, _ in self.written_apart(block)]
+        return [
+            pair for body in bodies for pair in self._with_conditions(body, _NONE_LEFT_OUT, NOTHING)
+        ]
+
     def _with_conditions(
         self, block: Block, left_out: frozenset[int], around: frozenset[str]
     ) -> Iterator[tuple[Step[Block], frozenset[str]]]:
@@ -356,10 +365,13 @@ class Analysis(Generic[Block]):
                     yield Step(writes=writes, calls=(body,)), around
 
 
-def _made_of(names: frozenset[str], steps: Collection[Step[Block]]) -> frozenset[str]:
-    """Names of data, and of those that these are made of in some statements."""
+def _made_of(
+    names: frozenset[str], steps: Collection[tuple[Step[Block], frozenset[str]]]
+) -> frozenset[str]:
+    """Names of data, and of those that these are made of in some statements, each with what the
+    conditions read that it runs on."""
     while True:
-        made = (step.made_of for step in steps if not names.isdisjoint(step.writes))
+        made = (s.made_of | around for s, around in steps if not names.isdisjoint(s.writes))
         more = names.union(*made)
         if more == names:
             return names

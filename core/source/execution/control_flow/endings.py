@@ -186,6 +186,9 @@ class Endings(Generic[Block]):
         gets_on = self._gets_on(passes)
         skip = self._way_out(passes)
         if skip is not None:
+            alone = answer is None and moved and loop.endless and host.course.answers.cycles == 1
+            if alone and self._states.are_under_way(passes):
+                return False
             followed = FOLLOWED if moving and loop.endless else FOLLOWED_UNMOVED
             round_ = moved and loop.endless and self._states.come_round(passes)
             if gets_on and answer is None and passes.count < followed and not round_:

@@ -94,38 +94,54 @@ class Flow(Generic[Block]):
             if reason:
                 found = [block for block in blocks if block is not None]
                 ways = {way for block in found for way in self._analysis.ways_out(block)}
-                if self._nesting.loop and ways:
+                if self._nesting.loop and any(how is not Exit.PASS for how, _ in ways):
                     self._loops[-1].suppose(reason)
                 self._suppose(found, reason)
                 self._guard(ways, reason)
 
     def _guard(self, ways: Iterable[Way], reason: str) -> None:
         """A branch that nobody decides has these ways out."""
-        course, routine = self._host.course, self._nesting.routine
-        if any(how is Exit.ROUTINE for how, _ in ways):
-            self._returns = self._returns or reason
-            course.guard = Guard(reason, routine, False, self._host.place, course.guard)
-        elif any(how is Exit.JUMP and (routine, name) not in self._passed for how, name in ways):
-            course.guard = Guard(reason, routine, True, self._host.place, course.guard)
+        host, routine = self._host, self._nesting.routine
+        guards = host.course.guards
+        open_ = {guard.label for guard in guards if guard.routine == routine}
+        for how, name in ways:
+            back = how is Exit.JUMP and (routine, name) in self._passed
+            label = self._end_of_pass() if how is Exit.PASS else name
+            meets = how in (Exit.PASS, Exit.JUMP, Exit.ROUTINE)
+            if meets and not back and label not in open_:
+                guards.append(Guard(reason, routine, label, host.place))
+            if how is Exit.ROUTINE:
+                self._returns = self._returns or reason
 
-    def _close(self, guard: Guard) -> None:
-        """The two ways have come together."""
+    def _ends_with_pass(self, guard: Guard) -> bool:
+        return guard.label == self._end_of_pass()
+
+    def _end_of_pass(self) -> str:
+        """Of the loop under way, as a label: no language can write it."""
+        return f"the end of pass {self._nesting.loop}"
+
+    def _close(self, comes_together: Callable[[Guard], bool]) -> None:
+        """The ways of some guards have come together."""
         host = self._host
-        host.course.guard = guard.close()
-        if guard.place is not host.place:
-            host.leave_supposed(frozenset({PLACE}), NOTHING, guard.reason)
+        for guard in [guard for guard in host.course.guards if comes_together(guard)]:
+            host.course.guards.remove(guard)
+            guard.close()
+            if guard.place is not host.place:
+                host.leave_supposed(frozenset({PLACE}), NOTHING, guard.reason)
 
     def _suppose(
         self, blocks: Iterable[Block], reason: str, names: frozenset[str] = NOTHING
     ) -> None:
-        settings: frozenset[str] = NOTHING
+        settings, called = NOTHING, NOTHING
         for block in blocks:
-            names |= self._analysis.written(block)
+            (_, own), *others = self._analysis.written_apart(block)
+            names |= own
+            called = called.union(*(written for _, written in others))
             settings |= self._analysis.settings(block)
             if self._analysis.moves(block):
                 names |= {PLACE}
-        if names or settings:
-            self._host.leave_supposed(names, settings, reason)
+        if names or settings or called:
+            self._host.leave_supposed(names, settings, reason, called)
 
     def loop(
         self,
@@ -160,6 +176,7 @@ class Flow(Generic[Block]):
             nesting.loop = outer
             if passes.supposed:
                 self._suppose([loop.body], passes.supposed, loop.writes)
+                self._guard(self._analysis.ways_out(loop.body), passes.supposed)
 
     def _run(
         self,
@@ -191,8 +208,14 @@ class Flow(Generic[Block]):
                 elif passes.left_to_others:
                     continue
             self._endings.look(passes)
+            if self._passed:  # the labels of a pass are ahead again
+                names = self._analysis.marks(loop.body)
+                self._passed -= {(self._nesting.routine, name) for name in names}
             begins()
-            if not run_pass():
+            stays = run_pass()
+            if host.course.guards:
+                self._close(self._ends_with_pass)
+            if not stays:
                 return
             host.meter.statement(loop.span)
             passes.count += 1
@@ -204,12 +227,10 @@ class Flow(Generic[Block]):
             label: its key.
             name: as jumps have it.
         """
-        course, routine = self._host.course, self._nesting.routine
+        routine = self._nesting.routine
         self._passed.add((routine, name))
-        while course.guard is not None and course.guard.to_label:
-            if course.guard.routine != routine:
-                break
-            self._close(course.guard)
+        if self._host.course.guards:
+            self._close(lambda guard: guard.routine == routine and guard.label == name)
         for place in [p for p in self._jumps if p[:2] == (self._nesting.routine, label)]:
             del self._jumps[place]
         self._reached[self._nesting.routine, label] = self._endings.start()
@@ -271,8 +292,8 @@ class Flow(Generic[Block]):
         finally:
             nesting.depth -= 1
             own, course = nesting.routine, self._host.course
-            while course.guard is not None and course.guard.routine == own:
-                self._close(course.guard)
+            if course.guards:
+                self._close(lambda guard: guard.routine == own)
             course.suppose(self._returns)
             self._returns = returns
             self._passed = {p for p in self._passed if p[0] != own}

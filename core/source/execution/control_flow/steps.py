@@ -82,3 +82,7 @@ class Tree(Protocol[Block]):
     def steps(self, block: Block) -> Sequence[Step[Block]]:
         """The statements of a block, in order."""
         ...
+
+    def own(self, block: Block) -> frozenset[str]:
+        """Names of the data that a routine keeps to itself, by its body; none of other blocks."""
+        ...

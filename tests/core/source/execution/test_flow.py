@@ -97,6 +97,9 @@ def counted(name: str) -> Set:
 
 
 class Tree:
+    def own(self, block: Block) -> frozenset[str]:
+        return frozenset()
+
     def steps(self, block: Block) -> Sequence[Step[Block]]:
         return [self._step(statement) for statement in block.statements]
 
@@ -161,8 +164,14 @@ class Run:
         self.supposed: frozenset[str] = frozenset()
         self._lines: dict[int, int] = {}
 
-    def leave_supposed(self, names: frozenset[str], settings: frozenset[str], reason: str) -> None:
-        self.supposed |= names
+    def leave_supposed(
+        self,
+        names: frozenset[str],
+        settings: frozenset[str],
+        reason: str,
+        called: frozenset[str] = frozenset(),
+    ) -> None:
+        self.supposed |= names | called
 
     def leave_to_others(self, names: frozenset[str], span: Span) -> list[str]:
         return []
