@@ -42,7 +42,7 @@ def test_all_that_is_asked_is_a_file_of_answers(flyby: Flyby, cell: Path) -> Non
     assert result.exit_code == 0
     found = tomllib.loads(result.stdout)
     assert found["calls"] == {"my_gripper": "skip"}
-    assert found["passes"] == {"cell.script:3": 0}
+    assert found["passes"] == {} and '#"cell.script:3" = 0' in result.stdout
     assert set(found["durations"]) == {"while get_digital_in(3) == False", "my_gripper(1)"}
     assert '#"get_digital_in(3)" = false' in result.stdout
     listed = json.loads(flyby("ask", cell, *ROBOT, "--json").stdout)["questions"]

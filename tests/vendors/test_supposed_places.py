@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 from hypothesis import given
@@ -13,6 +13,8 @@ from flyby.core.program.assumed_places import refuse_assumed
 from flyby.core.program.program import Program
 from flyby.core.registry import find_vendor
 from flyby.core.source.execution.answers import Answers, key
+from flyby.core.source.execution.answers_file import load_answers
+from flyby.core.source.execution.answers_text import answers_text
 from flyby.core.source.reading import ReadOptions
 
 EXTERNAL = ",".join(["9E9"] * 6)
@@ -374,6 +376,17 @@ def test_what_a_branch_sets_that_nobody_decides_is_supposed(text: Text, line: st
     assert moves[-1].supposed and not program.moves[-1].supposed
     with pytest.raises(InputError, match="nothing can be proven or written"):
         refuse_assumed(program)
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.vendor)
+def test_what_is_asked_and_not_answered_is_as_little_known(text: Text, tmp_path) -> None:
+    path = tmp_path / "answers.toml"
+    for line in text.chosen:
+        program = read(text, line, Answers(goes_on=True))
+        path.write_text(answers_text(program.questions, text.file), "utf-8")
+        told = replace(load_answers(path), goes_on=True)
+        again = read(text, line, told)
+        assert [m.supposed for m in again.moves] == [m.supposed for m in program.moves]
 
 
 @pytest.mark.parametrize(

@@ -20,8 +20,9 @@ _TABLES = {
 }
 _HEAD = """\
 # What {name} asks that no file says. This file changes nothing as it is: what is taken for
-# granted stands in it, and what is not known is put behind a #. Take the # away and put a value in;
-# structures may be tables {{ x = 1 }}, arrays [1, 2] or texts as the program writes them.
+# granted stands in it, and what is not known, or decided by rule, is put behind a #. Take the #
+# away and put a value in; structures may be tables {{ x = 1 }}, arrays [1, 2] or texts as the
+# program writes them.
 # What is read again and again has answers in turn in [sequences]: a list for each name.
 """
 FOUND = "found by trying, and not measured"
@@ -69,11 +70,15 @@ def grouped(questions: Sequence[Question]) -> list[str]:
             first = group[0]
             named = first.key if len(first.key) <= _LONGEST else f"{first.key[:_LONGEST]}…"
             at = f"{first.span.file}:{first.span.line}"
-            placed = first.table in ("branches", "passes") or at.casefold().endswith(first.key)
+            placed = first.table in _BY_RULE or at.casefold().endswith(first.key)
             shown = at if placed else f"{named} ({at})"
             more = f" and {len(group) - 1} more" if len(group) > 1 else ""
             told.append(f"{kind.value}: {shown}{more}")
     return told
+
+
+_BY_RULE = ("branches", "passes")
+"""Tables of what is decided by rule where nobody says it."""
 
 
 def _name(question: Question) -> str:
@@ -100,6 +105,8 @@ def _entry(question: Question, several: bool) -> list[str]:
     line = f"{key_text(question.key)} = "
     if question.taken is not None:
         line += answer_text(question.taken)
+        if question.table in _BY_RULE and not question.answered:
+            line = f"#{line}"  # nothing is proven of a way that nobody has said
     else:
         example: Answer = 0.0 if question.example is None else question.example
         line = f"#{line}{answer_text(example)}"
