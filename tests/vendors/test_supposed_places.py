@@ -333,6 +333,9 @@ end
             "  movel(pose_add(get_target_tcp_pose(), p[0,0,0.01,0,0,0]))",
             "k = 0\n  while k < 2:\n    k = k + 1\n    if {n} > 3:\n      continue\n    end\n"
             "    sleep(0.1)\n  end\n  movel(pose_add(two[0], p[0,0,0.01*k,0,0,0]))",
+            "k = 0\n  while k < 2:\n    k = k + 1\n    j = 0\n    while {n} > j:\n      j = j + 1\n"
+            "      if j > 5:\n        continue\n      end\n    end\n    h = 0.01\n  end\n"
+            "  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
             "early()\n  h = 0\n  movel(pose_add(two[0], p[0,0,h,0,0,0]))",
         ),
     ),

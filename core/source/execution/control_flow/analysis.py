@@ -145,17 +145,21 @@ class Analysis(Generic[Block]):
     def written_apart(self, body: Block) -> list[tuple[Block, frozenset[str]]]:
         """Names of the data that a block may write, and apart from it those that each routine does
         which is called from there, but for what it keeps to itself."""
-        found: list[tuple[Block, frozenset[str]]] = []
-        todo, reached = [body], {id(body)}
-        for one in todo:
-            steps = [*self._all(one)]
-            own = NOTHING if one is body else self._tree.own(one)
-            found.append((one, NOTHING.union(*(step.writes for step in steps)) - own))
-            for called in (called for step in steps for called in step.calls):
-                if id(called) not in reached:
-                    reached.add(id(called))
-                    todo.append(called)
-        return found
+
+        def find() -> list[tuple[Block, frozenset[str]]]:
+            found: list[tuple[Block, frozenset[str]]] = []
+            todo, reached = [body], {id(body)}
+            for one in todo:
+                steps = [*self._all(one)]
+                own = NOTHING if one is body else self._tree.own(one)
+                found.append((one, NOTHING.union(*(step.writes for step in steps)) - own))
+                for called in (called for step in steps for called in step.calls):
+                    if id(called) not in reached:
+                        reached.add(id(called))
+                        todo.append(called)
+            return found
+
+        return self._once("written apart", body, [], find)
 
     def outputs_written(self, block: Block) -> frozenset[str] | None:
         """Names of the outputs that a block, and what it calls, may write; None for any."""

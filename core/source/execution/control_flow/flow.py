@@ -176,7 +176,9 @@ class Flow(Generic[Block]):
             nesting.loop = outer
             if passes.supposed:
                 self._suppose([loop.body], passes.supposed, loop.writes)
-                self._guard(self._analysis.ways_out(loop.body), passes.supposed)
+                own = Exit.PASS, Exit.LOOP
+                ways = self._analysis.ways_out(loop.body)
+                self._guard([way for way in ways if way[0] not in own], passes.supposed)
 
     def _run(
         self,
